@@ -176,26 +176,11 @@ static const RtColumnGroup in_full[] = {
     {"counts_after", rt_tally_columns, RT_TALLY_COUNTER_COUNT, tally_after},
 };
 
-static const void *row_at(void *context, size_t i) {
-    Row *r = context;
-    r->cell = &r->comparison->cells[i];
-    return r;
-}
-
 static bool has_instructions(const RtComparison *comparison) {
     for (uint32_t i = 0; i < comparison->count; i++) {
         if (comparison->cells[i].instructions[0] > 0) return true;
     }
     return false;
-}
-
-RtTable rt_comparison_table(RtComparedRow *row, bool all) {
-    RtTable table = all ? (RtTable){RT_GROUPS(in_full)} : (RtTable){RT_GROUPS(for_the_eye)};
-    if (!all && !has_instructions(row->comparison)) table.group_count = 1;
-    table.row_count = row->comparison->count;
-    table.row = row_at;
-    table.context = row;
-    return table;
 }
 
 #define JUDGED(value) (r->accel->groups >= 2 ? (value) : (double)NAN)
@@ -222,16 +207,25 @@ static const RtColumnGroup accels_for_the_eye[] = {RT_FROM_TO(accel_columns, eye
 static const RtColumnGroup accels_in_full[] = {RT_ONE(accel_columns, of_accel), RT_ONE(accel_columns, groups),
                                                RT_FROM_TO(accel_columns, verdict, high)};
 
+static const void *row_at(void *context, size_t i) {
+    Row *r = context;
+    r->cell = &r->comparison->cells[i];
+    return r;
+}
+
 static const void *accel_at(void *context, size_t i) {
     Row *r = context;
     r->accel = &r->comparison->accels[i];
     return r;
 }
 
-RtTable rt_compared_accels_table(RtComparedRow *row, bool all) {
-    RtTable table = all ? (RtTable){RT_GROUPS(accels_in_full)} : (RtTable){RT_GROUPS(accels_for_the_eye)};
-    table.row_count = row->comparison->accel_count;
-    table.row = accel_at;
+RtTable rt_comparison_table(RtComparedRow *row, bool accels, bool all) {
+    static const RtTable tables[2][2] = {{{RT_GROUPS(for_the_eye)}, {RT_GROUPS(in_full)}},
+                                         {{RT_GROUPS(accels_for_the_eye)}, {RT_GROUPS(accels_in_full)}}};
+    RtTable table = tables[accels][all];
+    if (!accels && !all && !has_instructions(row->comparison)) table.group_count = 1;
+    table.row_count = accels ? row->comparison->accel_count : row->comparison->count;
+    table.row = accels ? accel_at : row_at;
     table.context = row;
     return table;
 }
@@ -336,7 +330,7 @@ static void explain_directories(const RtComparison *comparison, char *out, size_
 
 void rt_comparison_print(const RtComparison *comparison, FILE *out) {
     RtComparedRow row = {.comparison = comparison};
-    RtTable cells = rt_comparison_table(&row, false), accels = rt_compared_accels_table(&row, false);
+    RtTable cells = rt_comparison_table(&row, false, false), accels = rt_comparison_table(&row, true, false);
     char text[800];
     fprintf(out, "before: %s\nafter:  %s\n\n", comparison->before, comparison->after);
     rt_table_text(&cells, out);
@@ -369,7 +363,7 @@ void rt_comparison_print(const RtComparison *comparison, FILE *out) {
 
 json_t *rt_comparison_json(const RtComparison *comparison) {
     RtComparedRow row = {.comparison = comparison};
-    RtTable cells = rt_comparison_table(&row, true), accels = rt_compared_accels_table(&row, true);
+    RtTable cells = rt_comparison_table(&row, false, true), accels = rt_comparison_table(&row, true, true);
     return json_pack("{s:s, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "before",
                      comparison->before, "after", comparison->after, "rounds", (json_int_t)comparison->rounds,
                      "pairs", (json_int_t)comparison->pairs, "intervals", (json_int_t)comparison->timed,

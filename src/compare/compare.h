@@ -151,15 +151,15 @@ bool rt_compared_counts_differ(const RtComparedCell *cell);
 uint32_t rt_comparison_count(const RtComparison *comparison, RtChange change);
 uint32_t rt_comparison_changed(const RtComparison *comparison);
 
-/* A table with a row per cell, for text or, with all columns, for JSON; `row` is scratch memory of the table.
+/* A table with a row per cell, or per accelerator, for text or, with all columns, for JSON; `row` is scratch
+ * memory of the table.
  */
 typedef struct RtComparedRow {
     const RtComparison *comparison;
     const RtComparedCell *cell;
     const RtComparedAccel *accel;
 } RtComparedRow;
-RtTable rt_comparison_table(RtComparedRow *row, bool all);
-RtTable rt_compared_accels_table(RtComparedRow *row, bool all);
+RtTable rt_comparison_table(RtComparedRow *row, bool accels, bool all);
 
 /* Prints the table, changed counts, and an explanation; or makes a JSON document, a new reference, NULL if
  * memory is short. */

@@ -5,6 +5,7 @@
 #include "core/base/clock.h"
 #include "core/base/random.h"
 #include "core/text/json.h"
+#include "measure/measure.h"
 #include "run/callgrind.h"
 #include "run/worker.h"
 

@@ -25,7 +25,7 @@
 #include "accel/extent.h"
 #include "core/scene/scene.h"
 #include "core/text/table.h"
-#include "measure/statistics.h"
+#include "measure/measure.h"
 
 typedef struct RtExtentChoice {
     RtExtentKind kind;

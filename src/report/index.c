@@ -230,39 +230,28 @@ static void title_of(const char *section, char title[RT_MAX_WORD]) {
     title[0] = (char)toupper((unsigned char)title[0]);
 }
 
-static const char *origin_of(const Index *index, uint32_t i, size_t origin) {
-    return (const char *)&index->entries[i] + origin;
-}
-
-/* Of how many entries `origin` (an offset) has the value of entry i; 0 if it has none, or an earlier entry
- * has it. */
-static uint32_t count_first(const Index *index, uint32_t i, size_t origin) {
-    const char *value = origin_of(index, i, origin);
-    uint32_t count = 0;
-    for (uint32_t k = 0; k < index->count; k++) {
-        const bool same = *value && strcmp(value, origin_of(index, k, origin)) == 0;
-        if (same && k < i) return 0;
-        count += same;
-    }
-    return count;
-}
-
 /* "Measured by raytally 0.1.0 (abc); raytally 0.2.0 (def): one, two; ...": the most frequent value of
- * `origin`, then each other one with its entries. */
+ * `origin` (an offset in Entry), then each other one with its entries. */
 static void put_origins(const Index *index, size_t origin, const char *before, FILE *out) {
-    uint32_t most = 0;
-    for (uint32_t i = 0; i < index->count; i++)
-        if (count_first(index, i, origin) > count_first(index, most, origin)) most = i;
-    if (index->count == 0 || count_first(index, most, origin) == 0) return;
-    fprintf(out, "%s%s", before, origin_of(index, most, origin));
+    json_t *origins = json_object(), *names, *name; /* {value: [names]}, in the order of the first entries */
+    const char *value, *most = NULL;
+    size_t k;
     for (uint32_t i = 0; i < index->count; i++) {
-        if (i == most || count_first(index, i, origin) == 0) continue;
-        fprintf(out, "; %s", origin_of(index, i, origin));
-        for (uint32_t k = i, named = 0; k < index->count; k++)
-            if (strcmp(origin_of(index, i, origin), origin_of(index, k, origin)) == 0)
-                fprintf(out, "%s%s", named++ ? ", " : ": ", index->entries[k].name);
+        value = (const char *)&index->entries[i] + origin;
+        if (*value && !json_object_get(origins, value)) json_object_set_new(origins, value, json_array());
+        json_array_append_new(json_object_get(origins, value), json_string(index->entries[i].name));
     }
-    fputc('.', out);
+    json_object_foreach(origins, value, names) {
+        if (!most || json_array_size(names) > json_array_size(json_object_get(origins, most))) most = value;
+    }
+    if (most) fprintf(out, "%s%s", before, most);
+    json_object_foreach(origins, value, names) {
+        if (value == most) continue;
+        fprintf(out, "; %s", value);
+        json_array_foreach(names, k, name) fprintf(out, "%s%s", k ? ", " : ": ", json_string_value(name));
+    }
+    if (most) fputc('.', out);
+    json_decref(origins);
 }
 
 /* ---- pages ---- */

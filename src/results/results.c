@@ -198,7 +198,8 @@ void rt_print_left_out(const RtResults *results, FILE *out) {
     }
 }
 
-bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind kind) {
+/* Whether any candidate was measured on the workload's rays of that kind. */
+static bool has_kind(const RtResults *results, uint32_t workload, RtRayKind kind) {
     for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
         const RtCell *cell = rt_cell_at(results, workload, c, kind);
         if (cell->counted || cell->timed) return true;
@@ -258,7 +259,7 @@ RtCost rt_results_total(const RtResults *results, uint32_t workload, uint32_t ca
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const double weight = rt_results_weight(results, workload, (RtRayKind)k);
         if (weight == 0 || !(kinds >> k & 1)) continue;
-        const bool measured = rt_results_has_kind(results, workload, (RtRayKind)k);
+        const bool measured = has_kind(results, workload, (RtRayKind)k);
         sum.whole &= measured;
         if (!measured) continue;
         const RtCost cost = cost_of_cell(results, workload, candidate, (RtRayKind)k);
@@ -459,14 +460,11 @@ RtEstimate rt_results_time_ratio(const RtResults *results, uint32_t workload, ui
 
 /* ---- the best ---- */
 
-bool rt_candidate_is_compared(const RtExperiment *experiment, uint32_t candidate) {
-    return candidate < experiment->candidate_count &&
-           strcmp(experiment->candidates[candidate].spec, rt_accel_yardstick()) != 0;
-}
-
 /* What candidates are compared by; NAN if it is unknown. */
 static double compared_cost(bool time, const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
-    if (!rt_candidate_is_compared(results->experiment, c)) return (double)NAN;
+    const RtExperiment *e = results->experiment;
+    if (c >= e->candidate_count || strcmp(e->candidates[c].spec, rt_accel_yardstick()) == 0)
+        return (double)NAN;
     const RtCost cost = rt_results_cost(results, t, c, kind);
     return time ? cost.seconds.median : cost.object_tests;
 }

@@ -166,9 +166,6 @@ void rt_results_leave_out(RtResults *results, uint32_t workload, uint32_t candid
 /* Prints a line for each structure and each cell that was left out, with the reason. */
 void rt_print_left_out(const RtResults *results, FILE *out);
 
-/* Whether any candidate was measured on the workload's rays of that kind. */
-bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind kind);
-
 /* What a ray kind weighs in every sum over kinds: the rays of its whole set, so that a lower limit changes no
  * total; of the measured set if the size of the whole is unknown. */
 double rt_results_weight(const RtResults *results, uint32_t workload, RtRayKind kind);
@@ -238,13 +235,10 @@ RtEstimate rt_results_time(const RtResults *results, uint32_t workload, uint32_t
 RtEstimate rt_results_time_ratio(const RtResults *results, uint32_t workload, uint32_t over, uint32_t under,
                                  RtRayKind kind, double coverage);
 
-/* False of null runs and the yardstick (rt_accel_yardstick). */
-bool rt_candidate_is_compared(const RtExperiment *experiment, uint32_t candidate);
-
 /* Compares a candidate with all others of the workload, for one kind of rays or RT_ALL_RAYS: by time if
  * anything was timed, else by object tests per ray. No other is faster than the best by the medians of paired
- * ratios; one whose ratio to the best has 1 in its interval is level with it. Only rt_candidate_is_compared
- * are compared. */
+ * ratios; one whose ratio to the best has 1 in its interval is level with it. Null runs and
+ * the yardstick (rt_accel_yardstick) are not compared. */
 RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
 
 /* The same by time, or by object tests, whatever was timed. */

@@ -4,7 +4,7 @@
  * cell, are too slow for whole frames. Plugins are left out: their rays travel to another process. */
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "measure/rounds.h"
+#include "measure/measure.h"
 #include "render/frame.h"
 #include "run/workload_state.h"
 

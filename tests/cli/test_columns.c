@@ -37,10 +37,10 @@ static RtTable of_instructions(void) {
     return rt_instructions_table(&row);
 }
 
-static RtTable of_comparison(RtTable (*table)(RtComparedRow *row, bool all)) {
+static RtTable of_comparison(bool accels) {
     static const RtComparison comparison = {0};
     static RtComparedRow row = {.comparison = &comparison};
-    return table(&row, true);
+    return rt_comparison_table(&row, accels, true);
 }
 
 typedef struct Section {
@@ -71,8 +71,8 @@ static void list(Section sections[SECTIONS]) {
         {"bench --json: null_runs", false, NULL, RESULTS(RT_NULL_RUNS)},
         {"bench --json --distribution: distributions", false, NULL, RESULTS(RT_DISTRIBUTIONS)},
         {"bench --json --callgrind: instructions", false, NULL, .table = of_instructions()},
-        {"compare --json: cells", false, NULL, .table = of_comparison(rt_comparison_table)},
-        {"compare --json: accelerators", false, NULL, .table = of_comparison(rt_compared_accels_table)},
+        {"compare --json: cells", false, NULL, .table = of_comparison(false)},
+        {"compare --json: accelerators", false, NULL, .table = of_comparison(true)},
         {"verify --json: rows", false, NULL, .table = verify_json},
         {"info --extents --json: extents.rows", false, NULL, .table = extents},
     };
