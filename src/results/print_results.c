@@ -42,14 +42,6 @@ static void print_rows(const RtResults *results, RtResultTable which, uint32_t w
     rt_table_text(&table, out);
 }
 
-static void print_all_rows(const RtResults *results, RtResultTable which, const char *title, FILE *out) {
-    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
-        if (!results->workloads[t].known) continue;
-        fprintf(out, "\n%s, %s:\n", results->experiment->workloads[t].label, title);
-        print_rows(results, which, t, out);
-    }
-}
-
 /* The baseline of the ratios, and the coverage of the intervals. */
 static void print_ratios(const RtResults *results, uint32_t least, uint32_t most, FILE *out) {
     const RtExperiment *experiment = results->experiment;
@@ -343,7 +335,11 @@ void rt_print_outcome(const RtResults *results, FILE *out) {
     for (uint32_t t = 0; frames && t < experiment->workload_count; t++)
         print_text(rt_frame_sentence(results, t), out);
     if (frames) print_text(rt_learnt_sentence(results), out);
-    if (experiment->render) print_all_rows(results, RT_RENDER_ROWS, "rendering the frame", out);
+    for (uint32_t t = 0; experiment->render && t < experiment->workload_count; t++) {
+        if (!results->workloads[t].known) continue;
+        fprintf(out, "\n%s, rendering the frame:\n", experiment->workloads[t].label);
+        print_rows(results, RT_RENDER_ROWS, t, out);
+    }
     rt_print_left_out(results, out);
 }
 

@@ -125,13 +125,6 @@ typedef enum RtFramePart {
     RT_FRAME_PARTS
 } RtFramePart;
 
-/* Over all rays of a part of the frame; NAN if unknown, or if the part has no rays. */
-typedef struct RtFrameCost {
-    double rays;
-    double object_tests;
-    double seconds, low, high; /* median, and the sums of the ends of the kinds' intervals */
-} RtFrameCost;
-
 /* The row at hand. */
 typedef struct RtFrameRow {
     const RtResults *results;
@@ -140,7 +133,9 @@ typedef struct RtFrameRow {
     uint32_t candidate;
     char shown[2 + RT_MAX_SHOWN]; /* its mark and its label, for a screen */
     const char *group;            /* printed rows: that of the last heading */
-    RtFrameCost cost[RT_FRAME_PARTS], without[RT_FRAME_PARTS];
+    /* Totals over a part of the frame; its tests and times are NAN if a kind was not measured, or if the part
+       has no rays. */
+    RtCost cost[RT_FRAME_PARTS], without[RT_FRAME_PARTS];
     double gain, tests_gain; /* in time, and in object tests */
     uint32_t winner; /* the fastest of the group, without overlays; of the fewest object tests if nothing was
                         timed; candidate_count: none */

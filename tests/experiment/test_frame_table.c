@@ -145,8 +145,9 @@ FRAME_TEST(an_overlay_whose_base_is_not_measured_has_no_gain_and_what_is_not_tim
     assert_true(is_unknown(row.gain) && is_unknown(row.tests_gain));
     assert_int_equal(row.winner, CLUSTERS);
     assert_non_null(table.row(table.context, GRID));
-    assert_true(is_unknown(row.cost[RT_FRAME_ALL].low) && is_unknown(row.cost[RT_FRAME_ALL].high));
-    assert_false(is_unknown(row.cost[RT_FRAME_PRIMARY].low));
+    assert_true(is_unknown(row.cost[RT_FRAME_ALL].seconds.low) &&
+                is_unknown(row.cost[RT_FRAME_ALL].seconds.high));
+    assert_false(is_unknown(row.cost[RT_FRAME_PRIMARY].seconds.low));
 }
 
 FRAME_TEST(where_nothing_is_timed_object_tests_decide) {
@@ -175,10 +176,10 @@ FRAME_TEST(a_frame_weighs_each_kind_of_ray_by_its_whole_set) {
     memcpy(w->whole_rays, w->rays, sizeof w->rays);
     w->whole_rays[RT_RAY_SHADOW] = 2700;
     assert_non_null(table.row(table.context, GRID));
-    assert_true(row.cost[RT_FRAME_ALL].rays == 2900);
+    assert_true(row.cost[RT_FRAME_ALL].weight == 2900);
     assert_true(row.cost[RT_FRAME_ALL].object_tests == 2900 * 20);
-    assert_true(fabs(row.cost[RT_FRAME_ALL].seconds - 1e-9 * (200 * 80 + 2700 * 400)) < 1e-15);
-    assert_true(fabs(row.without[RT_FRAME_SHADOW].seconds - 1e-9 * 2700 * 8000) < 1e-15);
+    assert_true(fabs(row.cost[RT_FRAME_ALL].seconds.median - 1e-9 * (200 * 80 + 2700 * 400)) < 1e-15);
+    assert_true(fabs(row.without[RT_FRAME_SHADOW].seconds.median - 1e-9 * 2700 * 8000) < 1e-15);
     rt_frame_title(&results, 0, text);
     assert_string_equal(text, "0 objects, a frame of 10x10: 100 primary, 2700 shadow and 100 secondary rays; "
                               "of 2900 rays, 500 measured");
