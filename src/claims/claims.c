@@ -51,15 +51,8 @@ static RtClaimVerdict compare(const RtClaim *claim, double low, double high) {
     return first && last ? RT_CLAIM_HOLDS : first || last ? RT_CLAIM_UNDECIDED : RT_CLAIM_FALSE;
 }
 
-/* What claims are judged by. */
-typedef struct Judge {
-    const RtResults *results;
-    const RtClaim *claim;
-    double coverage; /* of each interval of a tracing time */
-} Judge;
-
 /* The verdict on one step of a trend. */
-static RtClaimVerdict step_of(const Judge *judge, const RtClaimPoint *one, const RtClaimPoint *next) {
+static RtClaimVerdict step_of(const RtClaimCase *judge, const RtClaimPoint *one, const RtClaimPoint *next) {
     const RtClaim *claim = judge->claim;
     RtEstimate before = one->y, after = next->y;
     if (claim->measure == RT_CLAIM_TIME && one->workload == next->workload) {
@@ -75,7 +68,7 @@ static RtClaimVerdict step_of(const Judge *judge, const RtClaimPoint *one, const
 }
 
 /* By the first step with the worst verdict; if all hold, from the first value to the last. */
-static void judge_trend(const Judge *judge, Figure *figure) {
+static void judge_trend(const RtClaimCase *judge, Figure *figure) {
     const RtClaimPoint *points = figure->points;
     figure->to = figure->count - 1;
     for (uint32_t i = 0, next = 0; i < figure->count; i++) {
@@ -117,7 +110,7 @@ static bool has_too_few_rays(const Figure *figure) {
     return figure->rays < RT_CLAIM_RAYS;
 }
 
-static void judge_figure(const Judge *judge, Figure *figure) {
+static void judge_figure(const RtClaimCase *judge, Figure *figure) {
     const RtClaim *claim = judge->claim;
     figure->verdict = RT_CLAIM_HOLDS;
     figure->rays = UINT64_MAX;
@@ -338,7 +331,8 @@ static uint32_t count_of_kind(const RtClaimPoint *points, uint32_t count) {
 }
 
 /* Reorders the points; returns the number of figures[]. */
-static uint32_t make_figures(const Judge *judge, RtClaimPoint *points, uint32_t count, Figure *figures) {
+static uint32_t make_figures(const RtClaimCase *judge, RtClaimPoint *points, uint32_t count,
+                             Figure *figures) {
     const RtClaim *claim = judge->claim;
     const bool line = claim->form >= RT_CLAIM_EXPONENT, all = claim->form == RT_CLAIM_CORRELATION;
     uint32_t made = 0;
@@ -392,7 +386,8 @@ static void put_readout(RtClaimResult *result, const RtExperiment *experiment, c
     put_figure(result, experiment, claim, most);
 }
 
-static void judge_points(const Judge *judge, RtClaimPoint *points, uint32_t count, RtClaimResult *result) {
+static void judge_points(const RtClaimCase *judge, RtClaimPoint *points, uint32_t count,
+                         RtClaimResult *result) {
     const RtExperiment *experiment = judge->results->experiment;
     const RtClaim *claim = judge->claim;
     Figure *figures = rt_alloc(count, sizeof *figures);
@@ -418,7 +413,7 @@ double rt_claims_coverage(const RtResults *results, uint32_t *count) {
         if (rt_claim_parse(experiment, experiment->claims[i], &claim, NULL) != RT_OK || claim.readout)
             continue;
         if (claim.measure == RT_CLAIM_TIME || claim.first == RT_CLAIM_TIME)
-            *count += rt_claim_gather(results, &claim, 0, NULL);
+            *count += rt_claim_gather(&(RtClaimCase){results, &claim, 0}, NULL);
     }
     return rt_coverage_of_each(*count);
 }
@@ -426,9 +421,9 @@ double rt_claims_coverage(const RtResults *results, uint32_t *count) {
 static void judge_parsed(const RtResults *results, const RtClaim *claim, RtClaimPoint *points,
                          RtClaimResult *result) {
     uint32_t known = 0, intervals;
-    const Judge judge = {results, claim,
-                         claim->readout ? rt_coverage_of_each(1) : rt_claims_coverage(results, &intervals)};
-    const uint32_t count = rt_claim_gather(results, claim, judge.coverage, points);
+    const RtClaimCase judge = {
+        results, claim, claim->readout ? rt_coverage_of_each(1) : rt_claims_coverage(results, &intervals)};
+    const uint32_t count = rt_claim_gather(&judge, points);
     for (uint32_t k = 0; k < count; k++) known += rt_claim_point_known(&points[k]) ? 1 : 0;
     if (!rt_claim_any_measured(results, claim, points, count)) {
         *result = (RtClaimResult){RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured"};

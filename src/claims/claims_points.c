@@ -24,16 +24,10 @@ static RtEstimate break_even(const RtResults *results, uint32_t t, uint32_t c) {
                         .high = isinf(even.rays.low) ? 0 : never};
 }
 
-/* What the values of a claim's cells depend on. */
-typedef struct Asked {
-    const RtResults *results;
-    const RtClaim *claim;
-    RtRayKind kind; /* of the cells now gathered, or RT_ALL_RAYS */
-    double coverage;
-} Asked;
-
-static RtEstimate value_at(const Asked *asked, RtClaimMeasure measure, uint32_t t, uint32_t c) {
-    const RtResults *results = asked->results;
+/* A measure of a cell of one kind of rays, or of RT_ALL_RAYS. */
+static RtEstimate value_at(const RtClaimCase *of, RtClaimMeasure measure, RtRayKind kind, uint32_t t,
+                           uint32_t c) {
+    const RtResults *results = of->results;
     const RtEstimate unknown = rt_estimate_exactly((double)NAN);
     if (measure >= RT_CLAIM_BUILD_TIME) {
         const RtBuildResult *build = rt_build_at(results, t, c);
@@ -46,8 +40,8 @@ static RtEstimate value_at(const Asked *asked, RtClaimMeasure measure, uint32_t 
         return rt_estimate_exactly(measure == RT_CLAIM_BYTES ? (double)build->structure.bytes
                                                              : build->structure.predicted_cost);
     }
-    if (measure == RT_CLAIM_TIME) return rt_results_time(results, t, c, asked->kind, asked->coverage);
-    const RtCost cost = rt_results_cost(results, t, c, asked->kind);
+    if (measure == RT_CLAIM_TIME) return rt_results_time(results, t, c, kind, of->coverage);
+    const RtCost cost = rt_results_cost(results, t, c, kind);
     const double counts[] = {[RT_CLAIM_OBJECT_TESTS] = cost.object_tests,
                              [RT_CLAIM_EXTENT_TESTS] = cost.extent_tests,
                              [RT_CLAIM_STEPS] = cost.steps,
@@ -67,13 +61,12 @@ static bool find_other(const RtExperiment *experiment, const RtClaim *claim, uin
     return false;
 }
 
-static RtEstimate ratio_at(const Asked *asked, uint32_t t, uint32_t c, uint32_t other) {
-    const RtClaimMeasure measure = asked->claim->measure;
-    if (measure == RT_CLAIM_TIME)
-        return rt_results_time_ratio(asked->results, t, c, other, asked->kind, asked->coverage);
-    const RtEstimate over = value_at(asked, measure, t, c);
+static RtEstimate ratio_at(const RtClaimCase *of, RtRayKind kind, uint32_t t, uint32_t c, uint32_t other) {
+    const RtClaimMeasure measure = of->claim->measure;
+    if (measure == RT_CLAIM_TIME) return rt_results_time_ratio(of->results, t, c, other, kind, of->coverage);
+    const RtEstimate over = value_at(of, measure, kind, t, c);
     if (other == c) return rt_estimate_exactly(over.median / over.median);
-    const RtEstimate under = value_at(asked, measure, t, other);
+    const RtEstimate under = value_at(of, measure, kind, t, other);
     return (RtEstimate){
         .median = over.median / under.median, .low = over.low / under.high, .high = over.high / under.low};
 }
@@ -110,12 +103,12 @@ static bool lacks(const RtResults *results, RtClaimMeasure measure, uint32_t t, 
 }
 
 /* The x of a cell; false if the claim excludes it. */
-static bool abscissa(const Asked *asked, uint32_t t, uint32_t c, double *x) {
-    const RtResults *results = asked->results;
-    const RtClaim *claim = asked->claim;
+static bool abscissa(const RtClaimCase *of, RtRayKind kind, uint32_t t, uint32_t c, double *x) {
+    const RtResults *results = of->results;
+    const RtClaim *claim = of->claim;
     *x = 0;
     if (claim->form == RT_CLAIM_CORRELATION) {
-        *x = value_at(asked, claim->first, t, c).median;
+        *x = value_at(of, claim->first, kind, t, c).median;
         bool all = strcmp(claim->accel, RT_CLAIM_ALL) == 0;
         return !(all && (lacks(results, claim->first, t, c) || lacks(results, claim->measure, t, c)));
     }
@@ -128,22 +121,23 @@ static bool abscissa(const Asked *asked, uint32_t t, uint32_t c, double *x) {
     return value && rt_swept_number(value, x);
 }
 
-static uint64_t rays_of(const Asked *asked, uint32_t t, uint32_t c) {
-    const bool all = asked->claim->measure == RT_CLAIM_BREAK_EVEN;
-    if (!rt_claim_is_of_rays(asked->claim) && !all) return UINT64_MAX;
-    return rt_results_cost(asked->results, t, c, all ? RT_ALL_RAYS : asked->kind).rays;
+static uint64_t rays_of(const RtClaimCase *of, RtRayKind kind, uint32_t t, uint32_t c) {
+    const bool all = of->claim->measure == RT_CLAIM_BREAK_EVEN;
+    if (!rt_claim_is_of_rays(of->claim) && !all) return UINT64_MAX;
+    return rt_results_cost(of->results, t, c, all ? RT_ALL_RAYS : kind).rays;
 }
 
-static void set_values(const Asked *asked, RtClaimPoint *point) {
-    const RtClaim *claim = asked->claim;
+static void set_values(const RtClaimCase *of, RtClaimPoint *point) {
+    const RtClaim *claim = of->claim;
     const uint32_t t = point->workload, c = point->candidate;
     uint32_t other = c;
-    const bool found = !*claim->other || find_other(asked->results->experiment, claim, t, c, &other);
-    const uint64_t own = rays_of(asked, t, c), its = found ? rays_of(asked, t, other) : own;
+    const bool found = !*claim->other || find_other(of->results->experiment, claim, t, c, &other);
+    const uint64_t own = rays_of(of, point->kind, t, c),
+                   its = found ? rays_of(of, point->kind, t, other) : own;
     point->rays = own < its ? own : its;
     point->y = !found          ? rt_estimate_exactly((double)NAN)
-               : *claim->other ? ratio_at(asked, t, c, other)
-                               : value_at(asked, claim->measure, t, c);
+               : *claim->other ? ratio_at(of, point->kind, t, c, other)
+                               : value_at(of, claim->measure, point->kind, t, c);
 }
 
 /* Whether the scene has rays of that kind, as far as is known. */
@@ -152,18 +146,18 @@ static bool has_rays(const RtResults *results, uint32_t t, RtRayKind kind) {
 }
 
 /* Those of one kind of rays, or of RT_ALL_RAYS. */
-static uint32_t gather_kind(const Asked *asked, RtClaimPoint *points) {
-    const RtExperiment *experiment = asked->results->experiment;
-    const RtClaim *claim = asked->claim;
+static uint32_t gather_kind(const RtClaimCase *of, RtRayKind kind, RtClaimPoint *points) {
+    const RtExperiment *experiment = of->results->experiment;
+    const RtClaim *claim = of->claim;
     const bool one = *experiment->best && strcmp(claim->accel, experiment->best) == 0;
     uint32_t count = 0;
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
-        if (claim->each_kind && !has_rays(asked->results, t, asked->kind)) continue;
+        if (claim->each_kind && !has_rays(of->results, t, kind)) continue;
         for (uint32_t i = 0; i < (one ? 1 : experiment->candidate_count); i++) {
             const uint32_t c = one ? RT_FASTEST_BASELINE : i;
-            RtClaimPoint point = {.workload = t, .candidate = c, .kind = asked->kind};
-            if (!is_about(experiment, claim, t, c) || !abscissa(asked, t, c, &point.x)) continue;
-            if (points) set_values(asked, &point);
+            RtClaimPoint point = {.workload = t, .candidate = c, .kind = kind};
+            if (!is_about(experiment, claim, t, c) || !abscissa(of, kind, t, c, &point.x)) continue;
+            if (points) set_values(of, &point);
             if (points) points[count] = point;
             count++;
         }
@@ -171,16 +165,12 @@ static uint32_t gather_kind(const Asked *asked, RtClaimPoint *points) {
     return count;
 }
 
-uint32_t rt_claim_gather(const RtResults *results, const RtClaim *claim, double coverage,
-                         RtClaimPoint *points) {
-    const RtExperiment *experiment = results->experiment;
-    Asked asked = {results, claim, claim->kind, coverage};
+uint32_t rt_claim_gather(const RtClaimCase *of, RtClaimPoint *points) {
+    const RtExperiment *experiment = of->results->experiment;
     uint32_t count = 0;
-    if (!claim->each_kind) return gather_kind(&asked, points);
-    for (uint32_t k = 0; k < experiment->kind_count; k++) {
-        asked.kind = experiment->kinds[k];
-        count += gather_kind(&asked, points ? points + count : NULL);
-    }
+    if (!of->claim->each_kind) return gather_kind(of, of->claim->kind, points);
+    for (uint32_t k = 0; k < experiment->kind_count; k++)
+        count += gather_kind(of, experiment->kinds[k], points ? points + count : NULL);
     return count;
 }
 

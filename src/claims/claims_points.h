@@ -17,10 +17,16 @@ typedef struct RtClaimPoint {
 /* Whether x and y are known. An infinite break-even is known. */
 bool rt_claim_point_known(const RtClaimPoint *point);
 
+/* What a claim is judged by. */
+typedef struct RtClaimCase {
+    const RtResults *results;
+    const RtClaim *claim;
+    double coverage; /* of each interval of a tracing time */
+} RtClaimCase;
+
 /* Writes the cells of a claim to points[0..workload_count * candidate_count * RT_RAY_KIND_COUNT), kind by
- * kind; returns their number. Intervals of tracing times cover `coverage`. NULL: only their number. */
-uint32_t rt_claim_gather(const RtResults *results, const RtClaim *claim, double coverage,
-                         RtClaimPoint *points);
+ * kind; returns their number. NULL: only their number. */
+uint32_t rt_claim_gather(const RtClaimCase *of, RtClaimPoint *points);
 
 /* Whether anything that the claim could be about was measured in any of the cells. */
 bool rt_claim_any_measured(const RtResults *results, const RtClaim *claim, const RtClaimPoint *points,
