@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # sweeps: cost over each swept parameter, for experiments that name no scripts. raytally writes plots/sweep-KEY.tsv
-# (src/report/sweep_data.h has the columns).
+# (src/report/plot.c has the columns).
 #: *-sweep-*-time: Time per ray over the swept parameter, a line per accelerator, a panel per scene.
 #:   All kinds of rays together, medians with intervals. All panels have the same scales; the legend has the order of the sweep.
 #: *-sweep-*-object-tests: Object tests per ray over the swept parameter, a line per accelerator, a panel per scene.

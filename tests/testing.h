@@ -97,7 +97,6 @@ static inline int assert_nothing_is_kept(void **state) {
 #define OWNED_FRAME    OWNED(rt_frame_clear) RtFrame
 #define OWNED_IMAGE    OWNED(rt_image_clear) RtImage
 #define OWNED_RESULTS  OWNED(rt_results_clear) RtResults
-#define OWNED_CSV      OWNED(rt_csv_clear) RtCsv
 #define OWNED_SOLIDS   OWNED(rt_solid_set_clear) RtSolidSet
 #define OWNED_BUILDER  OWNED(rt_csg_builder_clear) RtCsgBuilder
 #define OWNED_FOREST   OWNED(rt_csg_forest_clear) RtCsgForest

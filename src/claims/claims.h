@@ -12,7 +12,7 @@
  * infinite if there is none.
  *
  * An exponent is the least-squares slope of the logarithms, a correlation Pearson's of the logarithms.
- * claims_figures.h defines their intervals. They include the scatter of the values, also of counts: a curve
+ * claims_points.h defines their intervals. They include the scatter of the values, also of counts: a curve
  * that is no power law has no precise exponent.
  *
  * A crossover is where the ratio of the two curves is 1, interpolated in the logarithms; its interval is the

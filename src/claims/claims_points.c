@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "claims/claims_points.h"
 
+#include "core/base/elementary.h"
 #include "core/base/words.h"
-#include "results/paired.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,16 +24,10 @@ static RtEstimate break_even(const RtResults *results, uint32_t t, uint32_t c) {
                         .high = isinf(even.rays.low) ? 0 : never};
 }
 
-/* What the values of a claim's cells depend on. */
-typedef struct Asked {
-    const RtResults *results;
-    const RtClaim *claim;
-    RtRayKind kind; /* of the cells now gathered, or RT_ALL_RAYS */
-    double coverage;
-} Asked;
-
-static RtEstimate value_at(const Asked *asked, RtClaimMeasure measure, uint32_t t, uint32_t c) {
-    const RtResults *results = asked->results;
+/* A measure of a cell of one kind of rays, or of RT_ALL_RAYS. */
+static RtEstimate value_at(const RtClaimCase *of, RtClaimMeasure measure, RtRayKind kind, uint32_t t,
+                           uint32_t c) {
+    const RtResults *results = of->results;
     const RtEstimate unknown = rt_estimate_exactly((double)NAN);
     if (measure >= RT_CLAIM_BUILD_TIME) {
         const RtBuildResult *build = rt_build_at(results, t, c);
@@ -46,8 +40,8 @@ static RtEstimate value_at(const Asked *asked, RtClaimMeasure measure, uint32_t 
         return rt_estimate_exactly(measure == RT_CLAIM_BYTES ? (double)build->structure.bytes
                                                              : build->structure.predicted_cost);
     }
-    if (measure == RT_CLAIM_TIME) return rt_results_time(results, t, c, asked->kind, asked->coverage);
-    const RtCost cost = rt_results_cost(results, t, c, asked->kind);
+    if (measure == RT_CLAIM_TIME) return rt_results_time(results, t, c, kind, of->coverage);
+    const RtCost cost = rt_results_cost(results, t, c, kind);
     const double counts[] = {[RT_CLAIM_OBJECT_TESTS] = cost.object_tests,
                              [RT_CLAIM_EXTENT_TESTS] = cost.extent_tests,
                              [RT_CLAIM_STEPS] = cost.steps,
@@ -67,13 +61,12 @@ static bool find_other(const RtExperiment *experiment, const RtClaim *claim, uin
     return false;
 }
 
-static RtEstimate ratio_at(const Asked *asked, uint32_t t, uint32_t c, uint32_t other) {
-    const RtClaimMeasure measure = asked->claim->measure;
-    if (measure == RT_CLAIM_TIME)
-        return rt_results_time_ratio(asked->results, t, c, other, asked->kind, asked->coverage);
-    const RtEstimate over = value_at(asked, measure, t, c);
+static RtEstimate ratio_at(const RtClaimCase *of, RtRayKind kind, uint32_t t, uint32_t c, uint32_t other) {
+    const RtClaimMeasure measure = of->claim->measure;
+    if (measure == RT_CLAIM_TIME) return rt_results_time_ratio(of->results, t, c, other, kind, of->coverage);
+    const RtEstimate over = value_at(of, measure, kind, t, c);
     if (other == c) return rt_estimate_exactly(over.median / over.median);
-    const RtEstimate under = value_at(asked, measure, t, other);
+    const RtEstimate under = value_at(of, measure, kind, t, other);
     return (RtEstimate){
         .median = over.median / under.median, .low = over.low / under.high, .high = over.high / under.low};
 }
@@ -110,12 +103,12 @@ static bool lacks(const RtResults *results, RtClaimMeasure measure, uint32_t t, 
 }
 
 /* The x of a cell; false if the claim excludes it. */
-static bool abscissa(const Asked *asked, uint32_t t, uint32_t c, double *x) {
-    const RtResults *results = asked->results;
-    const RtClaim *claim = asked->claim;
+static bool abscissa(const RtClaimCase *of, RtRayKind kind, uint32_t t, uint32_t c, double *x) {
+    const RtResults *results = of->results;
+    const RtClaim *claim = of->claim;
     *x = 0;
     if (claim->form == RT_CLAIM_CORRELATION) {
-        *x = value_at(asked, claim->first, t, c).median;
+        *x = value_at(of, claim->first, kind, t, c).median;
         bool all = strcmp(claim->accel, RT_CLAIM_ALL) == 0;
         return !(all && (lacks(results, claim->first, t, c) || lacks(results, claim->measure, t, c)));
     }
@@ -128,22 +121,23 @@ static bool abscissa(const Asked *asked, uint32_t t, uint32_t c, double *x) {
     return value && rt_swept_number(value, x);
 }
 
-static uint64_t rays_of(const Asked *asked, uint32_t t, uint32_t c) {
-    const bool all = asked->claim->measure == RT_CLAIM_BREAK_EVEN;
-    if (!rt_claim_is_of_rays(asked->claim) && !all) return UINT64_MAX;
-    return rt_results_cost(asked->results, t, c, all ? RT_ALL_RAYS : asked->kind).rays;
+static uint64_t rays_of(const RtClaimCase *of, RtRayKind kind, uint32_t t, uint32_t c) {
+    const bool all = of->claim->measure == RT_CLAIM_BREAK_EVEN;
+    if (!rt_claim_is_of_rays(of->claim) && !all) return UINT64_MAX;
+    return rt_results_cost(of->results, t, c, all ? RT_ALL_RAYS : kind).rays;
 }
 
-static void set_values(const Asked *asked, RtClaimPoint *point) {
-    const RtClaim *claim = asked->claim;
+static void set_values(const RtClaimCase *of, RtClaimPoint *point) {
+    const RtClaim *claim = of->claim;
     const uint32_t t = point->workload, c = point->candidate;
     uint32_t other = c;
-    const bool found = !*claim->other || find_other(asked->results->experiment, claim, t, c, &other);
-    const uint64_t own = rays_of(asked, t, c), its = found ? rays_of(asked, t, other) : own;
+    const bool found = !*claim->other || find_other(of->results->experiment, claim, t, c, &other);
+    const uint64_t own = rays_of(of, point->kind, t, c),
+                   its = found ? rays_of(of, point->kind, t, other) : own;
     point->rays = own < its ? own : its;
     point->y = !found          ? rt_estimate_exactly((double)NAN)
-               : *claim->other ? ratio_at(asked, t, c, other)
-                               : value_at(asked, claim->measure, t, c);
+               : *claim->other ? ratio_at(of, point->kind, t, c, other)
+                               : value_at(of, claim->measure, point->kind, t, c);
 }
 
 /* Whether the scene has rays of that kind, as far as is known. */
@@ -152,18 +146,18 @@ static bool has_rays(const RtResults *results, uint32_t t, RtRayKind kind) {
 }
 
 /* Those of one kind of rays, or of RT_ALL_RAYS. */
-static uint32_t gather_kind(const Asked *asked, RtClaimPoint *points) {
-    const RtExperiment *experiment = asked->results->experiment;
-    const RtClaim *claim = asked->claim;
+static uint32_t gather_kind(const RtClaimCase *of, RtRayKind kind, RtClaimPoint *points) {
+    const RtExperiment *experiment = of->results->experiment;
+    const RtClaim *claim = of->claim;
     const bool one = *experiment->best && strcmp(claim->accel, experiment->best) == 0;
     uint32_t count = 0;
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
-        if (claim->each_kind && !has_rays(asked->results, t, asked->kind)) continue;
+        if (claim->each_kind && !has_rays(of->results, t, kind)) continue;
         for (uint32_t i = 0; i < (one ? 1 : experiment->candidate_count); i++) {
             const uint32_t c = one ? RT_FASTEST_BASELINE : i;
-            RtClaimPoint point = {.workload = t, .candidate = c, .kind = asked->kind};
-            if (!is_about(experiment, claim, t, c) || !abscissa(asked, t, c, &point.x)) continue;
-            if (points) set_values(asked, &point);
+            RtClaimPoint point = {.workload = t, .candidate = c, .kind = kind};
+            if (!is_about(experiment, claim, t, c) || !abscissa(of, kind, t, c, &point.x)) continue;
+            if (points) set_values(of, &point);
             if (points) points[count] = point;
             count++;
         }
@@ -171,16 +165,12 @@ static uint32_t gather_kind(const Asked *asked, RtClaimPoint *points) {
     return count;
 }
 
-uint32_t rt_claim_gather(const RtResults *results, const RtClaim *claim, double coverage,
-                         RtClaimPoint *points) {
-    const RtExperiment *experiment = results->experiment;
-    Asked asked = {results, claim, claim->kind, coverage};
+uint32_t rt_claim_gather(const RtClaimCase *of, RtClaimPoint *points) {
+    const RtExperiment *experiment = of->results->experiment;
     uint32_t count = 0;
-    if (!claim->each_kind) return gather_kind(&asked, points);
-    for (uint32_t k = 0; k < experiment->kind_count; k++) {
-        asked.kind = experiment->kinds[k];
-        count += gather_kind(&asked, points ? points + count : NULL);
-    }
+    if (!of->claim->each_kind) return gather_kind(of, of->claim->kind, points);
+    for (uint32_t k = 0; k < experiment->kind_count; k++)
+        count += gather_kind(of, experiment->kinds[k], points ? points + count : NULL);
     return count;
 }
 
@@ -268,4 +258,157 @@ const char *rt_claim_refusal(const RtResults *results, const RtClaim *claim) {
         if (build->refused && named && here) return build->left_out;
     }
     return NULL;
+}
+
+/* ---- figures ---- */
+
+static bool all_have_logarithms(const RtClaimPoint *points, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        if (!(points[i].x > 0 && points[i].y.low > 0 && isfinite(points[i].y.high))) return false;
+    }
+    return true;
+}
+
+/* Sums of squares and products of the logarithms about their means. */
+typedef struct Moments {
+    double x, y; /* means */
+    double xx, yy, xy;
+} Moments;
+
+static Moments moments_of(const RtClaimPoint *points, uint32_t count) {
+    Moments m = {0};
+    for (uint32_t i = 0; i < count; i++) {
+        m.x += rt_log(points[i].x) / count;
+        m.y += rt_log(points[i].y.median) / count;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        const double x = rt_log(points[i].x) - m.x, y = rt_log(points[i].y.median) - m.y;
+        m.xx += x * x;
+        m.yy += y * y;
+        m.xy += x * y;
+    }
+    /* Equal values differ from their mean by rounding. */
+    if (m.xx < 1e-24 * count) m.xx = 0;
+    if (m.yy < 1e-24 * count) m.yy = 0;
+    return m;
+}
+
+/* ---- exponents ---- */
+
+RtEstimate rt_claim_exponent(const RtClaimPoint *points, uint32_t count, double *error) {
+    *error = 0;
+    if (!all_have_logarithms(points, count)) return rt_estimate_exactly((double)NAN);
+    const Moments m = moments_of(points, count);
+    RtEstimate slope = {0};
+    if (m.xx == 0) return rt_estimate_exactly((double)NAN);
+    const double from = rt_log(points->y.median); /* equal values have a slope of exactly 0 */
+    for (uint32_t i = 0; i < count; i++) {
+        const RtEstimate *y = &points[i].y;
+        const double d = (rt_log(points[i].x) - m.x) / m.xx;
+        slope.median += d * (rt_log(y->median) - from);
+        slope.low += d * (rt_log(d > 0 ? y->low : y->high) - from);
+        slope.high += d * (rt_log(d > 0 ? y->high : y->low) - from);
+    }
+    const double residuals = m.yy - slope.median * m.xy;       /* the sum of their squares */
+    if (count == 2 || residuals <= 1e-12 * m.yy) return slope; /* less is rounding */
+    *error = sqrt(residuals / (count - 2) / m.xx);
+    const double scatter = rt_student_quantile(count - 2, 0.95) * *error;
+    slope.low = fmin(slope.low, slope.median - scatter);
+    slope.high = fmax(slope.high, slope.median + scatter);
+    return slope;
+}
+
+/* ---- correlations ---- */
+
+RtEstimate rt_claim_correlation(const RtClaimPoint *points, uint32_t count) {
+    if (!all_have_logarithms(points, count)) return rt_estimate_exactly((double)NAN);
+    const Moments m = moments_of(points, count);
+    const double r = fmax(-1, fmin(1, m.xy / sqrt(m.xx * m.yy)));
+    if (!(m.xx > 0 && m.yy > 0)) return rt_estimate_exactly((double)NAN);
+    if (count < 4) return (RtEstimate){r, -1, 1, -1};
+    /* tanh(artanh r -+ d) = (r -+ tanh d) / (1 -+ r tanh d) */
+    const double e = rt_power(2.718281828459045, 2 * 1.96 / sqrt(count - 3)), t = (e - 1) / (e + 1);
+    return (RtEstimate){r, (r - t) / (1 - r * t), (r + t) / (1 + r * t), -1};
+}
+
+/* ---- crossovers ---- */
+
+/* The curves of the logarithm of y between points[0] and points[1]; `at` is 0 at the first and 1 at the
+ * second. */
+static double x_at(const RtClaimPoint *points, double at) {
+    return at == 0 ? points[0].x : rt_power(points[0].x, 1 - at) * rt_power(points[1].x, at);
+}
+
+static double between(double first, double second, double at) {
+    return rt_log(first) * (1 - at) + rt_log(second) * at;
+}
+
+/* Where a curve from `first` to `second` passes 1; 1 if it does not. */
+static double root(double first, double second) {
+    const double a = rt_log(first), b = rt_log(second);
+    return (a < 0 && b > 0) || (a > 0 && b < 0) ? a / (a - b) : 1;
+}
+
+/* On which side of 1 the interval of y lies; 0 if it contains 1. */
+static int side_at(const RtClaimPoint *points, double at) {
+    if (between(points[0].y.low, points[1].y.low, at) > 0) return 1;
+    return between(points[0].y.high, points[1].y.high, at) < 0 ? -1 : 0;
+}
+
+/* Follows the side along x; enters `side` at `x`. */
+typedef struct Walk {
+    RtCrossover *crossovers;
+    uint32_t count;
+    int side;
+    RtCrossover open; /* while side is 0 */
+} Walk;
+
+static void add(Walk *walk, RtCrossover crossover) {
+    if (walk->count < RT_MAX_CROSSOVERS) walk->crossovers[walk->count] = crossover;
+    walk->count++;
+}
+
+static void enter(Walk *walk, double x, int side) {
+    if (side == walk->side) return;
+    if (side == 0) {
+        walk->open = (RtCrossover){.low = x, .before = walk->side};
+    } else if (walk->side == 0) {
+        walk->open.high = x;
+        walk->open.after = side;
+        add(walk, walk->open);
+    } else {
+        add(walk, (RtCrossover){x, x, walk->side, side});
+    }
+    walk->side = side;
+}
+
+uint32_t rt_claim_crossovers(const RtClaimPoint *points, uint32_t count,
+                             RtCrossover crossovers[RT_MAX_CROSSOVERS]) {
+    Walk walk = {.crossovers = crossovers};
+    if (count < 2 || !all_have_logarithms(points, count)) return 0;
+    for (uint32_t i = 0; i + 1 < count; i++) {
+        const RtClaimPoint *p = &points[i];
+        const double a = root(p[0].y.low, p[1].y.low), b = root(p[0].y.high, p[1].y.high);
+        const double cuts[] = {0, fmin(a, b), fmax(a, b), 1};
+        for (int k = 0; k < 3; k++) {
+            const int side = side_at(p, 0.5 * (cuts[k] + cuts[k + 1]));
+            if (cuts[k] == cuts[k + 1]) continue;
+            if (i == 0 && k == 0) walk.side = side; /* before it: nothing is known */
+            enter(&walk, x_at(p, cuts[k]), side);
+        }
+    }
+    walk.open.high = INFINITY;
+    if (walk.side == 0) add(&walk, walk.open);
+    return walk.count;
+}
+
+double rt_claim_median_crossover(const RtClaimPoint *points, uint32_t count, const RtCrossover *crossover,
+                                 double after) {
+    for (uint32_t i = 0; i < count; i++) {
+        const RtClaimPoint *p = &points[i];
+        const double at = i + 1 < count ? root(p[0].y.median, p[1].y.median) : 1;
+        const double x = p->y.median == 1 ? p->x : at < 1 ? x_at(p, at) : 0;
+        if (x > after && x >= crossover->low && x <= crossover->high) return x;
+    }
+    return (double)NAN;
 }

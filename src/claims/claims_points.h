@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The cells that a claim is about, with their values. */
+/* The cells that a claim is about, with their values, and figures over several of them. */
 #ifndef RT_CLAIMS_CLAIMS_POINTS_H
 #define RT_CLAIMS_CLAIMS_POINTS_H
 
@@ -17,10 +17,16 @@ typedef struct RtClaimPoint {
 /* Whether x and y are known. An infinite break-even is known. */
 bool rt_claim_point_known(const RtClaimPoint *point);
 
+/* What a claim is judged by. */
+typedef struct RtClaimCase {
+    const RtResults *results;
+    const RtClaim *claim;
+    double coverage; /* of each interval of a tracing time */
+} RtClaimCase;
+
 /* Writes the cells of a claim to points[0..workload_count * candidate_count * RT_RAY_KIND_COUNT), kind by
- * kind; returns their number. Intervals of tracing times cover `coverage`. NULL: only their number. */
-uint32_t rt_claim_gather(const RtResults *results, const RtClaim *claim, double coverage,
-                         RtClaimPoint *points);
+ * kind; returns their number. NULL: only their number. */
+uint32_t rt_claim_gather(const RtClaimCase *of, RtClaimPoint *points);
 
 /* Whether anything that the claim could be about was measured in any of the cells. */
 bool rt_claim_any_measured(const RtResults *results, const RtClaim *claim, const RtClaimPoint *points,
@@ -33,5 +39,38 @@ uint32_t rt_claim_line(const RtExperiment *experiment, const RtClaim *claim, RtC
 
 /* Why an accelerator that the claim names refused a scene of it; NULL if none did. */
 const char *rt_claim_refusal(const RtResults *results, const RtClaim *claim);
+
+/* ---- figures ---- */
+
+/* Exponents, correlations and crossovers are of logarithms, so values are above 0; otherwise the figure is
+ * unknown. */
+
+/* The least-squares slope of log y over log x. The interval covers the slopes of all values within the
+ * intervals of y, and 95 % of the slopes of a line round which the points scatter: Student's t with count - 2
+ * degrees of freedom (Draper & Smith 1998, "Applied Regression Analysis", section 1.4). Two points have no
+ * scatter. *error is the standard error. NAN if any point is unknown: the others may have another slope. */
+RtEstimate rt_claim_exponent(const RtClaimPoint *points, uint32_t count, double *error);
+
+/* Pearson's correlation of log x and log y. The interval of 95 % is Fisher's (1921, "On the 'Probable Error'
+ * of a Coefficient of Correlation", Metron 1), which takes the cells for independent draws from a bivariate
+ * normal distribution: what other cells of this kind would show. -1 to 1 for fewer than four. */
+RtEstimate rt_claim_correlation(const RtClaimPoint *points, uint32_t count);
+
+/* Values of x for which the interval of y, the ratio of two curves, contains 1. Between the points, which are
+ * sorted by x, all three curves of y (low, median, high) are straight in the logarithms. */
+typedef struct RtCrossover {
+    double low, high;  /* 0 and INFINITY: beyond the first or last point */
+    int before, after; /* -1: y is below 1 on that side; 1: above; 0: unknown, beyond the points */
+} RtCrossover;
+
+/* Writes the first RT_MAX_CROSSOVERS of them in order and returns their number. Zero for unknown values. */
+enum { RT_MAX_CROSSOVERS = 16 };
+uint32_t rt_claim_crossovers(const RtClaimPoint *points, uint32_t count,
+                             RtCrossover crossovers[RT_MAX_CROSSOVERS]);
+
+/* The x within [crossover->low, crossover->high] above `after` where the median of y is next 1; NAN if there
+ * is none. */
+double rt_claim_median_crossover(const RtClaimPoint *points, uint32_t count, const RtCrossover *crossover,
+                                 double after);
 
 #endif

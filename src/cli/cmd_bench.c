@@ -7,7 +7,6 @@
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "measure/machine.h"
-#include "results/distribution_tables.h"
 #include "results/result_tables.h"
 #include "run/callgrind.h"
 #include "run/worker.h"
@@ -167,12 +166,12 @@ static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
     json_t *all = json_pack("{s:o, s:o, s:I, s:I, s:s, s:o, s:o}", "machine", rt_machine_json(), "scenes",
                             scenes, "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds, "baseline",
                             rt_baseline_label(e), "rows", rows, "null_runs", nulls);
-    RtDistributionRow distribution = {.results = results};
     RtInstructionsRow instructions = {.callgrind = callgrind};
+    RtResultRow row = {.results = results};
     if (e->distributions) {
-        const RtTable table = rt_distribution_table(RT_DISTRIBUTIONS, &distribution);
+        const RtTable table = rt_result_table(RT_DISTRIBUTIONS, &row);
         json_object_set_new(all, "distributions", rt_table_json(&table));
-        const RtTable bins = rt_distribution_table(RT_HISTOGRAMS, &distribution);
+        const RtTable bins = rt_result_table(RT_HISTOGRAMS, &row);
         json_object_set_new(all, "histograms", rt_table_json(&bins));
     }
     const RtTable counted = rt_instructions_table(&instructions);

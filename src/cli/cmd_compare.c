@@ -8,7 +8,6 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/plugins_used.h"
-#include "results/manifest.h"
 #include "results/result_directory.h"
 #include "run/callgrind.h"
 #include "run/worker.h"

@@ -6,7 +6,6 @@
 #include "cli/progress.h"
 #include "core/base/file.h"
 #include "core/base/words.h"
-#include "report/index.h"
 #include "report/plot.h"
 #include "report/report.h"
 #include "results/result_tables.h"

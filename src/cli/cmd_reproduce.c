@@ -5,7 +5,6 @@
 #include "cli/progress.h"
 #include "core/base/memory.h"
 #include "core/base/versions.h"
-#include "results/manifest.h"
 #include "results/result_directory.h"
 
 #include <inttypes.h>

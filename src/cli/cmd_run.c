@@ -7,10 +7,9 @@
 #include "cli/progress.h"
 #include "core/base/words.h"
 #include "measure/result_files.h"
-#include "report/index.h"
 #include "report/report.h"
 #include "results/journal.h"
-#include "results/manifest.h"
+#include "results/result_directory.h"
 #include "results/result_tables.h"
 #include "run/run.h"
 

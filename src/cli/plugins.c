@@ -5,7 +5,7 @@
 #include "core/base/file.h"
 #include "core/base/words.h"
 #include "experiment/plugins_used.h"
-#include "results/manifest.h"
+#include "results/result_directory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -34,6 +34,7 @@
 #ifndef RT_COMPARE_COMPARE_H
 #define RT_COMPARE_COMPARE_H
 
+#include "core/base/memory.h"
 #include "core/text/table.h"
 #include "run/workload.h"
 
@@ -69,8 +70,8 @@ typedef struct RtComparedCell {
     double before, after;          /* seconds a ray: median */
     bool counted;                  /* both of these are known, and independent of the machine */
     RtTally counts_before, counts; /* of the cell */
-    const RtCell *(*runs)[2];      /* [pairs] owned: before, after; NULL: not timed */
-    double *ratios;                /* [RT_MAX_ROUNDS] owned: of each round of two programs; or NULL */
+    const RtCell *(*runs)[2];      /* [pairs]: before, after; NULL: not timed */
+    double *ratios;                /* [RT_MAX_ROUNDS]: of each round of two programs; or NULL */
     uint32_t rounds;               /* of these; fewer if a limit excluded the cell from some */
     double instructions[2];        /* a ray, before and after; 0: not counted */
     char uncounted[RT_MAX_WHY];    /* why instructions of one are not, though asked for; else "" */
@@ -85,11 +86,12 @@ typedef struct RtComparedAccel {
 } RtComparedAccel;
 
 typedef struct RtComparison {
+    RtArena memory;        /* of all but the cells */
     RtComparedCell *cells; /* [count] owned */
     uint32_t count, capacity;
     uint32_t timed;               /* cells with an interval */
     uint32_t rounds;              /* of two programs; 0: of directories */
-    RtComparedAccel *accels;      /* [accel_count] owned; of directories */
+    RtComparedAccel *accels;      /* [accel_count]; of directories */
     uint32_t accel_count, judged; /* and those with an interval */
     uint32_t pairs;               /* of directories */
     double all_accels;            /* ratio of the median accelerator; NAN: unknown */
@@ -149,15 +151,15 @@ bool rt_compared_counts_differ(const RtComparedCell *cell);
 uint32_t rt_comparison_count(const RtComparison *comparison, RtChange change);
 uint32_t rt_comparison_changed(const RtComparison *comparison);
 
-/* A table with a row per cell, for text or, with all columns, for JSON; `row` is scratch memory of the table.
+/* A table with a row per cell, or per accelerator, for text or, with all columns, for JSON; `row` is scratch
+ * memory of the table.
  */
 typedef struct RtComparedRow {
     const RtComparison *comparison;
     const RtComparedCell *cell;
     const RtComparedAccel *accel;
 } RtComparedRow;
-RtTable rt_comparison_table(RtComparedRow *row, bool all);
-RtTable rt_compared_accels_table(RtComparedRow *row, bool all);
+RtTable rt_comparison_table(RtComparedRow *row, bool accels, bool all);
 
 /* Prints the table, changed counts, and an explanation; or makes a JSON document, a new reference, NULL if
  * memory is short. */

@@ -3,9 +3,9 @@
  */
 #include "compare/compare.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
 #include "core/base/random.h"
 #include "core/text/json.h"
+#include "measure/measure.h"
 #include "run/callgrind.h"
 #include "run/worker.h"
 
@@ -69,7 +69,7 @@ static RtComparedCell *enter(Run *run, json_t *const sections[2], const json_t *
         rt_comparison_cell(run->comparison, rt_json_text(section, "scene", ""),
                            rt_json_text(either, "accel", ""), rt_json_text(section, "kind", ""));
     if (!cell) return NULL;
-    if (!cell->ratios) cell->ratios = rt_alloc(RT_MAX_ROUNDS, sizeof(double));
+    if (!cell->ratios) cell->ratios = rt_arena_alloc(&run->comparison->memory, RT_MAX_ROUNDS, sizeof(double));
     if (!cell->ratios) return NULL;
     cell->timed = before && after;
     if (!cell->timed) {
@@ -170,18 +170,16 @@ static RtStatus compare_section(Run *run, json_t *const sections[2], RtError *er
                            rt_json_text(sections[BEFORE], "scene", ""),
                            rt_json_text(sections[BEFORE], "kind", ""));
     }
-    Pair *pairs = rt_alloc(count, sizeof(Pair));
-    if (!pairs) return rt_fail_memory(error, "cells", count * sizeof(Pair));
-    RtStatus status = find_pairs(run, sections, pairs, &count, error);
-    for (int who = BEFORE; who <= AFTER && status == RT_OK && programs->pinned; who++) {
-        status = rt_worker_ask(&run->workers[who], NULL, error, "pin %" PRIu32 "\n", run->round);
-    }
-    if (status == RT_OK) status = time_pairs(run, pairs, count, error);
-    for (int who = BEFORE; who <= AFTER && status == RT_OK; who++) {
-        status = rt_worker_ask(&run->workers[who], NULL, error, "next\n");
-    }
-    rt_free(pairs);
-    return status;
+    RT_ARENA(arena);
+    Pair *pairs = rt_arena_alloc(&arena, count, sizeof(Pair));
+    RT_TRY(rt_arena_check(&arena, "cells", error));
+    RT_TRY(find_pairs(run, sections, pairs, &count, error));
+    for (int who = BEFORE; who <= AFTER && programs->pinned; who++)
+        RT_TRY(rt_worker_ask(&run->workers[who], NULL, error, "pin %" PRIu32 "\n", run->round));
+    RT_TRY(time_pairs(run, pairs, count, error));
+    for (int who = BEFORE; who <= AFTER; who++)
+        RT_TRY(rt_worker_ask(&run->workers[who], NULL, error, "next\n"));
+    return RT_OK;
 }
 
 /* ---- a round ---- */

@@ -92,7 +92,7 @@ typedef struct RtCandidate {
 
 _Static_assert(RT_MAX_WORKLOADS <= 32, "a bit of excluded for every workload");
 
-/* The table of the costs of a whole frame (results/frame_table.h). */
+/* The table of the costs of a whole frame (results/result_tables.h). */
 typedef struct RtFrameSetup {
     char without[RT_MAX_LABEL]; /* the candidate without a structure; "": no such table */
     char among[RT_MAX_WORD];    /* the group whose fastest is marked */

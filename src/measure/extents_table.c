@@ -1,11 +1,345 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "measure/extents_table.h"
 
+#include "core/base/memory.h"
+#include "core/base/random.h"
+#include "rays/rayset.h"
+
+/* The objects of one shape, or all of them. */
+typedef struct Population {
+    const RtGeometry *geometry;
+    uint32_t count;
+    uint32_t *ids; /* [count] ascending; the arena's */
+} Population;
+
+static RtStatus find_population(Population *population, const RtGeometry *geometry, RtShape shape,
+                                RtArena *arena, RtError *error) {
+    *population = (Population){.geometry = geometry};
+    population->ids = rt_arena_alloc(arena, geometry->object_count, sizeof(uint32_t));
+    RT_TRY(rt_arena_check(arena, "the objects of a shape", error));
+    for (uint32_t id = 0; id < geometry->object_count; id++) {
+        if (shape == RT_SHAPE_COUNT || rt_ref_shape(geometry->objects[id]) == shape)
+            population->ids[population->count++] = id;
+    }
+    return RT_OK;
+}
+
+/* ---- the extents of one object ---- */
+
+/* Fitted for one extent of any kind. */
+typedef struct Fitted {
+    RtBall ball;
+    RtOrientedBox oriented;
+    RtSlab slabs[RT_MAX_SLABS];
+} Fitted;
+
+static RtExtentSet fit(const RtGeometry *geometry, uint32_t id, RtExtentChoice choice, Fitted *fitted) {
+    RtExtentSet set = {choice.kind, 1, choice.slabs, &fitted->ball, &fitted->oriented, fitted->slabs};
+    const RtGroup group = {geometry, &id, 1, geometry->boxes[id]};
+    rt_extent_fit(&set, 0, &group);
+    return set;
+}
+
+/* A sphere around object `id` and its extents of every kind, slightly enlarged. */
+static RtBall sphere_about_extents(const RtGeometry *geometry, uint32_t id) {
+    Fitted fitted;
+    fit(geometry, id, (RtExtentChoice){RT_EXTENT_SPHERE, 0}, &fitted);
+    fit(geometry, id, (RtExtentChoice){RT_EXTENT_OBB, 0}, &fitted);
+    const RtBall *ball = &fitted.ball;
+    const RtOrientedBox *box = &fitted.oriented;
+    RtVec3d center = rt_widen(rt_box_center(geometry->boxes[id]));
+    double of_box = rt_lengthd(rt_subd(rt_widen(geometry->boxes[id].hi), center));
+    double of_ball = rt_lengthd(rt_subd(ball->center, center)) + ball->radius;
+    double of_oriented = rt_lengthd(rt_subd(box->center, center)) +
+                         rt_lengthd(rt_vec3d(box->half[0], box->half[1], box->half[2]));
+    return (RtBall){center, fmax(of_box, fmax(of_ball, of_oriented)) * (1 + 0x1p-6)};
+}
+
+/* ---- tightness ---- */
+
+typedef struct Survey {
+    const Population *population;
+    const RtExtentChoice *choices;
+    size_t count;
+    uint64_t seed;
+    RtBall *spheres;       /* [population->count] */
+    Fitted *fitted;        /* [count] */
+    RtExtentSet *sets;     /* [count] */
+    RtTightness *out;      /* [count] */
+    RtCrossing *crossings; /* of hit functions */
+} Survey;
+
+/* A random line through the sphere, as a ray that starts far behind it: extents may extend beyond the box of
+ * their object, and must not lie behind the ray. */
+static RtRay random_line(const RtBall *sphere, RtRandom *random) {
+    RtRay ray = rt_sphere_chord(sphere, random);
+    RtVec3d back = rt_scaled(rt_normalized(rt_widen(ray.dir)), -4 * sphere->radius);
+    ray.org = rt_narrow(rt_addd(rt_widen(ray.org), back));
+    return ray;
+}
+
+static void count_lines(const Survey *survey, uint32_t index, uint64_t lines) {
+    const RtGeometry *geometry = survey->population->geometry;
+    uint32_t id = survey->population->ids[index];
+    RtRandom random = rt_random(survey->seed, id);
+    for (size_t c = 0; c < survey->count; c++) {
+        survey->sets[c] = fit(geometry, id, survey->choices[c], &survey->fitted[c]);
+    }
+    for (uint64_t k = 0; k < lines; k++) {
+        RtRay through = random_line(&survey->spheres[index], &random);
+        RtPreparedRay ray;
+        rt_hit_ray(&ray, geometry, &through, survey->crossings);
+        RtHit hit = RT_MISS;
+        bool met = rt_test_object(geometry, id, &ray, true, &hit, NULL);
+        for (size_t c = 0; c < survey->count; c++) {
+            const RtExtentSet *set = &survey->sets[c];
+            RtLine line = rt_line(set, set->kind, &geometry->box, &ray);
+            float enter;
+            survey->out[c].lines++;
+            survey->out[c].object_hits += met;
+            survey->out[c].extent_hits +=
+                rt_extent_hit(set, set->kind, 0, &geometry->boxes[id], &ray, &line, ray.tmax, &enter);
+        }
+    }
+}
+
+/* Distributes the lines by area, each part rounded up or down without bias. Returns the sum of the squared
+ * radii. */
+static double deal_lines(const Survey *survey, uint64_t lines) {
+    uint32_t count = survey->population->count;
+    double whole = 0, sum = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        survey->spheres[i] = sphere_about_extents(survey->population->geometry, survey->population->ids[i]);
+        whole += survey->spheres[i].radius * survey->spheres[i].radius;
+    }
+    RtRandom random = rt_random(survey->seed, UINT64_MAX);
+    double start = (double)rt_random_unit(&random);
+    for (uint64_t i = 0, dealt = 0; whole > 0 && i < count; i++) {
+        sum += survey->spheres[i].radius * survey->spheres[i].radius;
+        uint64_t until = (uint64_t)((double)lines * (sum / whole) + start);
+        if (until > dealt) count_lines(survey, (uint32_t)i, until - dealt);
+        dealt = until;
+    }
+    return whole;
+}
+
+/* The inverse of Wilson's interval of the part of extent hits that hit the object. */
+static void estimate_tightness(RtTightness *out) {
+    double n = (double)out->extent_hits, k = (double)out->object_hits;
+    const double z = 1.959963984540054;
+    double middle = (k + z * z / 2) / (n + z * z);
+    double half = z / (n + z * z) * sqrt(k * (n - k) / n + z * z / 4);
+    out->ratio = k > 0 ? n / k : (double)NAN;
+    out->low = n > 0 ? fmax(1, 1 / (middle + half)) : (double)NAN;
+    out->high = k > 0 ? 1 / (middle - half) : n > 0 ? (double)INFINITY : (double)NAN;
+}
+
+static RtStatus count_population(const Population *population, const RtExtentChoice *choices, size_t count,
+                                 uint64_t lines, uint64_t seed, RtTightness *out, RtArena *arena,
+                                 RtError *error) {
+    Survey survey = {.population = population,
+                     .choices = choices,
+                     .count = count,
+                     .seed = seed,
+                     .spheres = rt_arena_alloc(arena, population->count, sizeof(RtBall)),
+                     .fitted = rt_arena_alloc(arena, count, sizeof(Fitted)),
+                     .sets = rt_arena_alloc(arena, count, sizeof(RtExtentSet)),
+                     .out = out};
+    RT_TRY(rt_arena_check(arena, "the tightness of extents", error));
+    RT_TRY(rt_crossings_alloc(population->geometry, &survey.crossings, error));
+    for (size_t c = 0; c < count; c++) out[c] = (RtTightness){0};
+    const double whole = deal_lines(&survey, lines);
+    const RtBall scene = rt_bounding_sphere(&population->geometry->box);
+    const double lines_of_scene = (double)lines * (scene.radius * scene.radius / whole);
+    for (size_t c = 0; c < count; c++) {
+        estimate_tightness(&out[c]);
+        out[c].met = whole > 0 ? (double)out[c].extent_hits / lines_of_scene : 0;
+    }
+    rt_free(survey.crossings);
+    return RT_OK;
+}
+
+RtStatus rt_tightness_count(const RtGeometry *geometry, RtShape shape, const RtExtentChoice *choices,
+                            size_t count, uint64_t lines, uint64_t seed, RtTightness *out, RtError *error) {
+    RT_ARENA(arena);
+    Population population;
+    RT_TRY(find_population(&population, geometry, shape, &arena, error));
+    return count_population(&population, choices, count, lines, seed, out, &arena, error);
+}
+
+/* ---- costs ---- */
+
+/* Objects whose extents are in the list, evenly spread over the population; lines that traverse it; rays for
+ * object tests; attempts to draw those. */
+enum { SAMPLE = 256, LINES = 64, CHORDS = 512, TRIES = 8192 };
+
+typedef struct PreparedRays {
+    uint32_t count;
+    RtRay rays[CHORDS];
+    RtPreparedRay prepared[CHORDS];
+    uint32_t ids[CHORDS]; /* the object that each is for */
+} PreparedRays;
+
+/* What all runners share. */
+typedef struct Bench {
+    const RtGeometry *geometry;
+    uint32_t count; /* objects sampled */
+    uint32_t ids[SAMPLE];
+    RtBox boxes[SAMPLE];
+    uint32_t met[SAMPLE];  /* extents that the last line hit, which a search would visit next */
+    PreparedRays lines;    /* through the scene */
+    PreparedRays chords;   /* that meet the box of their object */
+    RtCrossing *crossings; /* of hit functions */
+} Bench;
+
+/* The extents of one choice. */
+typedef struct Extents {
+    Bench *bench;
+    RtExtentSet set;
+} Extents;
+
+RT_KERNEL void test_list(RtExtentKind kind, const Extents *extents) {
+    Bench *bench = extents->bench;
+    for (uint32_t k = 0; k < bench->lines.count; k++) {
+        RtPreparedRay ray = rt_ray_prepare(&bench->lines.rays[k], &bench->geometry->box);
+        RtLine line = rt_line(&extents->set, kind, &bench->geometry->box, &ray);
+        uint32_t met = 0;
+        for (uint32_t i = 0; i < bench->count; i++) {
+            float enter;
+            if (rt_extent_hit(&extents->set, kind, i, &bench->boxes[i], &ray, &line, ray.tmax, &enter)) {
+                bench->met[met++] = i;
+            }
+        }
+    }
+}
+
+static RtStatus run_extents(void *context, RtError *error) {
+    (void)error;
+    const Extents *extents = context;
+    RT_BY_EXTENT_KIND(extents->set.kind, test_list, extents);
+    return RT_OK;
+}
+
+static RtStatus run_objects(void *context, RtError *error) {
+    (void)error;
+    Bench *bench = context;
+    uint32_t met = 0;
+    for (uint32_t k = 0; k < bench->chords.count; k++) {
+        RtHit hit = RT_MISS;
+        const RtPreparedRay *ray = &bench->chords.prepared[k];
+        met += rt_test_object(bench->geometry, bench->chords.ids[k], ray, true, &hit, NULL);
+    }
+    bench->met[0] = met;
+    return RT_OK;
+}
+
+static void add_ray(PreparedRays *to, const RtGeometry *geometry, const RtRay *ray, RtCrossing *crossings,
+                    uint32_t id) {
+    to->rays[to->count] = *ray;
+    rt_hit_ray(&to->prepared[to->count], geometry, &to->rays[to->count], crossings);
+    to->ids[to->count++] = id;
+}
+
+static void fill_bench(Bench *bench, const Population *population, uint64_t seed) {
+    const RtGeometry *geometry = population->geometry;
+    RtRandom random = rt_random(seed, 1);
+    bench->geometry = geometry;
+    bench->count = population->count < SAMPLE ? population->count : SAMPLE;
+    for (uint32_t i = 0; i < bench->count; i++) {
+        uint32_t id = population->ids[(uint64_t)i * population->count / bench->count];
+        bench->ids[i] = id;
+        bench->boxes[i] = geometry->boxes[id];
+    }
+    for (uint32_t k = 0; k < TRIES && bench->chords.count < CHORDS; k++) {
+        uint32_t id = bench->ids[k % bench->count];
+        RtBall sphere = sphere_about_extents(geometry, id);
+        RtRay ray = rt_sphere_chord(&sphere, &random);
+        RtPreparedRay prepared = rt_ray_prepare(&ray, &geometry->box);
+        float enter;
+        bool met = rt_box_hit(&geometry->boxes[id], &prepared, prepared.tmax, &enter);
+        if (met) add_ray(&bench->chords, geometry, &ray, bench->crossings, id);
+    }
+    for (uint32_t k = 0; k < LINES; k++) {
+        RtRay ray = rt_random_chord(&geometry->box, &random);
+        add_ray(&bench->lines, geometry, &ray, bench->crossings, RT_NO_OBJECT);
+    }
+}
+
+static RtStatus fit_extents(Extents *extents, Bench *bench, RtExtentChoice choice, RtArena *arena,
+                            RtError *error) {
+    extents->bench = bench;
+    RT_TRY(rt_extent_set_init(&extents->set, arena, choice.kind, choice.slabs, bench->count, error));
+    for (uint32_t i = 0; i < bench->count; i++) {
+        const RtGroup group = {bench->geometry, &bench->ids[i], 1, bench->boxes[i]};
+        rt_extent_fit(&extents->set, i, &group);
+    }
+    return RT_OK;
+}
+
+/* Times of the rounds: [count] rows of B, then one of I, then room for two of T. */
+typedef struct Times {
+    const RtRounds *rounds;
+    double *seconds;
+    size_t count;
+} Times;
+
+static double *row(const Times *times, size_t i) {
+    return times->seconds + i * times->rounds->rounds;
+}
+
+/* T of one choice in every round, to `out`. */
+static void weigh(const Times *times, size_t choice, double tests, double met, double *out) {
+    for (uint32_t r = 0; r < times->rounds->rounds; r++) {
+        out[r] = tests * row(times, choice)[r] + met * row(times, times->count)[r];
+    }
+}
+
+static void conclude(const Times *times, const Population *population, const RtTightness *tightness,
+                     RtExtentCost *out) {
+    uint32_t rounds = times->rounds->rounds;
+    double *first = row(times, times->count + 1), *own = row(times, times->count + 2);
+    weigh(times, 0, population->count, tightness[0].met, first);
+    for (size_t c = 0; c < times->count; c++) {
+        weigh(times, c, population->count, tightness[c].met, own);
+        out[c] = (RtExtentCost){rt_estimate(row(times, c), rounds), rt_estimate(own, rounds),
+                                rt_estimate_ratio(own, first, rounds)};
+    }
+}
+
+/* Times what was counted: tightness[i] and out[i] are for choices[i]. The population is not empty. */
+static RtStatus time_population(const Population *population, const RtExtentChoice *choices, size_t count,
+                                const RtTightness *tightness, RtEstimate *object, RtExtentCost *out,
+                                RtArena *arena, RtError *error) {
+    static const RtRounds rounds = {.rounds = 20, .most = 20, .least = 1e-3, .seed = 1};
+    Bench *bench = rt_arena_alloc(arena, 1, sizeof(Bench));
+    Extents *extents = rt_arena_alloc(arena, count, sizeof(Extents));
+    RtRunner *runners = rt_arena_alloc(arena, count + 1, sizeof(RtRunner));
+    const Times times = {&rounds, rt_arena_alloc(arena, (count + 3) * rounds.rounds, sizeof(double)), count};
+    RT_TRY(rt_arena_check(arena, "timing extents", error));
+    RT_TRY(rt_crossings_alloc(population->geometry, &bench->crossings, error));
+    fill_bench(bench, population, rounds.seed);
+    RtStatus status = RT_OK;
+    for (size_t c = 0; status == RT_OK && c < count; c++) {
+        status = fit_extents(&extents[c], bench, choices[c], arena, error);
+        runners[c] = (RtRunner){.run = run_extents,
+                                .context = &extents[c],
+                                .work = (double)bench->count * LINES,
+                                .seconds = row(&times, c)};
+    }
+    const bool any = bench->chords.count > 0;
+    uint32_t done;
+    runners[count] = (RtRunner){
+        .run = run_objects, .context = bench, .work = bench->chords.count, .seconds = row(&times, count)};
+    if (status == RT_OK) status = rt_rounds_run(runners, count + any, &rounds, &done, error);
+    if (status == RT_OK) conclude(&times, population, tightness, out);
+    *object = any ? rt_estimate(row(&times, count), rounds.rounds) : rt_estimate_exactly((double)NAN);
+    rt_free(bench->crossings);
+    return status;
+}
+
+/* ---- the table ---- */
+
 static const char *const kind_names[RT_EXTENT_KIND_COUNT] = {"box", "sphere", "obb", "slabs"};
-
-static const RtRounds rounds = {.rounds = 20, .most = 20, .least = 1e-3, .seed = 1};
-
-/* ---- measuring ---- */
 
 static void choose(RtExtentsTable *table, bool every_slabs) {
     static const RtExtentKind plain[] = {RT_EXTENT_BOX, RT_EXTENT_SPHERE, RT_EXTENT_OBB};
@@ -16,27 +350,22 @@ static void choose(RtExtentsTable *table, bool every_slabs) {
     }
 }
 
-static RtStatus measure(RtExtentsTable *table, const RtPopulation *population, RtError *error) {
-    RtExtentsOfShape *of = &table->shapes[table->shape_count++];
-    of->shape = population->shape;
-    of->objects = population->count;
-    RT_TRY(rt_tightness_count(population, table->choices, table->choice_count, table->lines, table->seed,
-                              of->tightness, error));
-    return rt_extent_cost_time(population, table->choices, table->choice_count, of->tightness, &rounds,
-                               &of->object, of->cost, error);
-}
-
 RtStatus rt_extents_table(RtExtentsTable *table, const RtScene *scene, bool every_slabs, uint64_t lines,
                           uint64_t seed, RtError *error) {
     *table = (RtExtentsTable){.lines = lines, .seed = seed};
     choose(table, every_slabs);
     for (int shape = 0; shape <= RT_SHAPE_COUNT; shape++) {
-        RtPopulation population;
-        RtStatus status = rt_population_init(&population, &scene->geometry, (RtShape)shape, error);
-        bool worthwhile = shape == RT_SHAPE_COUNT ? table->shape_count > 1 : population.count > 0;
-        if (status == RT_OK && worthwhile) status = measure(table, &population, error);
-        rt_population_clear(&population);
-        RT_TRY(status);
+        RT_ARENA(arena);
+        Population population;
+        RT_TRY(find_population(&population, &scene->geometry, (RtShape)shape, &arena, error));
+        if (shape == RT_SHAPE_COUNT ? table->shape_count <= 1 : population.count == 0) continue;
+        RtExtentsOfShape *of = &table->shapes[table->shape_count++];
+        of->shape = (RtShape)shape;
+        of->objects = population.count;
+        RT_TRY(count_population(&population, table->choices, table->choice_count, lines, seed, of->tightness,
+                                &arena, error));
+        RT_TRY(time_population(&population, table->choices, table->choice_count, of->tightness, &of->object,
+                               of->cost, &arena, error));
     }
     return RT_OK;
 }

@@ -1,30 +1,56 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The table of `raytally info --extents`: how tight the extents of a scene are, by shape, and what they cost.
+/* The table of `raytally info --extents`: how tight the extents of a scene are, by shape, and what they cost
+ * (Weghorst, Hooper & Greenberg 1984).
  *
- * The cost of a line is T = b B + i I (Weghorst, Hooper & Greenberg 1984). Here the b extents of a population
- * are in a list without a hierarchy: b is their number, B the time of an extent test, i the number of extents
- * that a random line through the scene hits, and I the time of an object test. B is measured by traversing a
- * list: a ray and its line are prepared once, then each extent is tested. I is measured on rays that hit the
- * object's box; no other ray is tested against the object. */
+ * Tightness is the projected area of an extent over that of its object, averaged over all directions. The
+ * part of uniform random lines through a sphere that hit a body within it is proportional to this area
+ * (Crofton's formula). So tightness is found by counting: of random lines through a sphere around the object
+ * and its extents, those that hit the extent over those that hit the object.
+ *
+ * A row covers many objects: the summed areas of their extents over their own summed areas. That is the
+ * number of extents that a random line hits for each object that it hits. Each object gets lines in
+ * proportion to the area of its sphere, so plain sums of hits have this ratio.
+ *
+ * A line that hits an object hits its extent (accel/extent.h), so the number O of the E lines through the
+ * extent is binomial, and the interval of O / E is Wilson's (1927, "Probable Inference", JASA 22).
+ *
+ * The cost of a line is T = b B + i I. Here the b extents of the objects of a shape are in a list without a
+ * hierarchy: b is their number, B the time of an extent test, i the number of extents that a random line
+ * through the scene hits, and I the time of an object test. B is measured by traversing a list: a ray and its
+ * line are prepared once, then each extent is tested. I is measured on rays that hit the object's box; no
+ * other ray is tested against the object. */
 #ifndef RT_MEASURE_EXTENTS_TABLE_H
 #define RT_MEASURE_EXTENTS_TABLE_H
 
+#include "accel/extent.h"
 #include "core/scene/scene.h"
 #include "core/text/table.h"
-#include "measure/statistics.h"
-#include "measure/tightness.h"
+#include "measure/measure.h"
+
+typedef struct RtExtentChoice {
+    RtExtentKind kind;
+    uint32_t slabs; /* plane sets, 3..RT_MAX_SLABS; 0 for the other kinds */
+} RtExtentChoice;
+
+typedef struct RtTightness {
+    uint64_t lines, extent_hits, object_hits;
+    double ratio, low, high; /* tightness and its 95 % interval. If no object is hit (triangles without
+                                area), the ratio is NaN and `high` infinite; if no extent is hit either, all
+                                three are NaN */
+    double met; /* mean number of extents of these objects that a random line through the scene's bounding
+                   sphere hits */
+} RtTightness;
+
+/* Counts the hits of `lines` lines with the objects of one shape of a finished geometry, or with all of them
+ * (RT_SHAPE_COUNT); out[i] is for choices[i], with the same lines. */
+RtStatus rt_tightness_count(const RtGeometry *geometry, RtShape shape, const RtExtentChoice *choices,
+                            size_t count, uint64_t lines, uint64_t seed, RtTightness *out, RtError *error);
 
 typedef struct RtExtentCost {
     RtEstimate test;  /* B, seconds */
     RtEstimate line;  /* T, seconds */
     RtEstimate ratio; /* T over that of the first choice, paired by rounds */
 } RtExtentCost;
-
-/* Times what rt_tightness_count has counted: tightness[i] and out[i] are for choices[i]. *object is I, all
- * NaN if no ray hit a box. The population is not empty. */
-RtStatus rt_extent_cost_time(const RtPopulation *population, const RtExtentChoice *choices, size_t count,
-                             const RtTightness *tightness, const RtRounds *rounds, RtEstimate *object,
-                             RtExtentCost *out, RtError *error);
 
 /* Boxes, spheres, oriented boxes, and 3..RT_MAX_SLABS slabs. */
 enum { RT_MAX_EXTENT_CHOICES = RT_EXTENT_KIND_COUNT - 1 + RT_MAX_SLABS - 2 };
@@ -35,7 +61,7 @@ typedef struct RtExtentsOfShape {
     uint32_t objects;
     RtTightness tightness[RT_MAX_EXTENT_CHOICES];
     RtExtentCost cost[RT_MAX_EXTENT_CHOICES];
-    RtEstimate object; /* seconds of an object test */
+    RtEstimate object; /* seconds of an object test; all NaN if no ray hit a box */
 } RtExtentsOfShape;
 
 typedef struct RtExtentsTable {

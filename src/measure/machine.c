@@ -18,37 +18,29 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-/* The value of `key` in /proc/cpuinfo for the first processor, or "". */
-static void read_cpu(const char *key, char *out, size_t size) {
+/* What follows `key` and a colon in the first line of a file of the kernel that begins with it, or "". */
+static void read_value(const char *path, const char *key, char *out, size_t size) {
     char line[512];
     out[0] = '\0';
-    FILE *file = fopen("/proc/cpuinfo", "r");
+    FILE *file = fopen(path, "r");
     while (file && !out[0] && fgets(line, sizeof line, file)) {
-        char *value = strchr(line, ':');
-        if (strncmp(line, key, strlen(key)) != 0 || !value) continue;
+        const char *value = line + strlen(key);
+        if (strncmp(line, key, strlen(key)) != 0) continue;
         line[strcspn(line, "\n")] = '\0';
-        snprintf(out, size, "%s", value + 1 + strspn(value + 1, " \t"));
+        snprintf(out, size, "%s", value + strspn(value, " \t:"));
     }
     if (file) fclose(file);
 }
 
-/* The first line of a file of the kernel, or "". */
-static void read_line(const char *path, char *out, int size) {
-    out[0] = '\0';
-    FILE *file = fopen(path, "r");
-    if (file && !fgets(out, size, file)) out[0] = '\0';
-    if (file) fclose(file);
-    out[strcspn(out, "\n")] = '\0';
-}
-
+#define CPUINFO "/proc/cpuinfo"
 #define CPUFREQ "/sys/devices/system/cpu/cpu0/cpufreq/"
 
 static json_t *clock_mhz(void) {
     char text[64];
-    read_line(CPUFREQ "cpuinfo_max_freq", text, sizeof text);
+    read_value(CPUFREQ "cpuinfo_max_freq", "", text, sizeof text);
     double mhz = 1e-3 * strtod(text, NULL);
     if (!(mhz > 0)) {
-        read_cpu("cpu MHz", text, sizeof text);
+        read_value(CPUINFO, "cpu MHz", text, sizeof text);
         mhz = strtod(text, NULL);
     }
     return mhz > 0 ? json_real(mhz) : json_null();
@@ -103,8 +95,8 @@ static uint64_t program_hash(void) {
 json_t *rt_machine_json(void) {
     char cpu[256], governor[64], system[256] = "";
     struct utsname name;
-    read_cpu("model name", cpu, sizeof cpu);
-    read_line(CPUFREQ "scaling_governor", governor, sizeof governor);
+    read_value(CPUINFO, "model name", cpu, sizeof cpu);
+    read_value(CPUFREQ "scaling_governor", "", governor, sizeof governor);
     if (uname(&name) == 0) {
         snprintf(system, sizeof system, "%.64s %.64s %.64s", name.sysname, name.release, name.machine);
     }
@@ -156,7 +148,7 @@ const char *rt_build_identity(void) {
 
 RtMachine rt_machine_here(void) {
     RtMachine machine = {"", ""};
-    read_cpu("model name", machine.cpu, sizeof machine.cpu);
+    read_value(CPUINFO, "model name", machine.cpu, sizeof machine.cpu);
     if (gethostname(machine.host, sizeof machine.host - 1) != 0) machine.host[0] = '\0';
     return machine;
 }

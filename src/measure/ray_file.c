@@ -1,27 +1,154 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* A file begins with magic bytes, a version, and the length of the header, which is a Python dictionary as
+ * text (NumPy Enhancement Proposal 1); then the numbers follow as they lie in memory. Input is not trusted:
+ * the version must be 1.0, 2.0 or 3.0, the dictionary must have exactly the three keys of the format, and the
+ * file must be as long as it says. */
 #include "measure/ray_file.h"
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
-#include "core/text/npy.h"
+#include "core/base/words.h"
 
+#include <assert.h>
+#include <ctype.h>
 #include <inttypes.h>
+#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
+/* The files are little-endian, like the memory of all machines that this program supports. */
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "arrays are written as they lie in memory");
 _Static_assert(offsetof(RtRay, org) == 0 && offsetof(RtRay, tmin) == 3 * sizeof(float) &&
                    offsetof(RtRay, dir) == 4 * sizeof(float) && offsetof(RtRay, tmax) == 7 * sizeof(float),
                "a ray begins with its row");
 
-/* Rows read at a time. */
-enum { BLOCK = 1024 };
+enum {
+    BLOCK = 1024, /* rows read at a time */
+    MAGIC_BYTES = 6,
+    MOST_HEADER = 4096, /* bytes of text; an array of numbers needs about a hundred */
+    MULTIPLE = 64       /* alignment of the numbers */
+};
+static const char MAGIC[MAGIC_BYTES + 1] = "\x93NUMPY";
+
+/* ---- reading headers ---- */
+
+/* The text of the header. */
+static RtStatus read_header(FILE *file, const char *path, char text[MOST_HEADER + 1], RtError *error) {
+    unsigned char start[MAGIC_BYTES + 2], size[4] = {0};
+    if (fread(start, 1, sizeof start, file) != sizeof start || memcmp(start, MAGIC, MAGIC_BYTES) != 0)
+        return rt_fail(error, RT_BAD_INPUT, "%s: this is not a NumPy array: write it with numpy.save", path);
+    const unsigned major = start[MAGIC_BYTES], minor = start[MAGIC_BYTES + 1];
+    if (major < 1 || major > 3 || minor != 0)
+        return rt_fail(error, RT_BAD_INPUT, "%s: unknown format version %u.%u: expected 1.0, 2.0 or 3.0",
+                       path, major, minor);
+    const size_t bytes = major == 1 ? 2 : 4;
+    const bool sized = fread(size, 1, bytes, file) == bytes;
+    const uint32_t length =
+        size[0] | (uint32_t)size[1] << 8 | (uint32_t)size[2] << 16 | (uint32_t)size[3] << 24;
+    if (length > MOST_HEADER)
+        return rt_fail(error, RT_BAD_INPUT, "%s: a header of %" PRIu32 " bytes: at most %d are read", path,
+                       length, MOST_HEADER);
+    if (!sized || fread(text, 1, length, file) != length)
+        return rt_fail(error, RT_BAD_INPUT, "%s: the file ends within its header", path);
+    text[length] = '\0';
+    if (strlen(text) == length) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "%s: the header contains a zero byte", path);
+}
+
+/* {'descr': '<f4', 'fortran_order': False, 'shape': (7, 8), } as JSON: with double quotes, brackets and small
+ * letters, without commas at the end. */
+static json_t *parse(const char *text) {
+    char json[MOST_HEADER + 1];
+    size_t length = 0;
+    for (const char *c = text; *c; c++) {
+        const char next = c[1 + strspn(c + 1, " \t\r\n")];
+        if (*c == ',' && (next == ')' || next == ']' || next == '}')) continue;
+        json[length++] = *c == '\''                                                  ? '"'
+                         : *c == '('                                                 ? '['
+                         : *c == ')'                                                 ? ']'
+                         : strncmp(c, "True", 4) == 0 || strncmp(c, "False", 5) == 0 ? (char)tolower(*c)
+                                                                                     : *c;
+    }
+    return json_loadb(json, length, JSON_REJECT_DUPLICATES, NULL);
+}
+
+static RtStatus check_header(const json_t *header, const char *text, const char *path, uint64_t *rows,
+                             RtError *error) {
+    const json_t *descr = json_object_get(header, "descr"), *shape = json_object_get(header, "shape");
+    const json_t *order = json_object_get(header, "fortran_order");
+    const json_int_t count = json_integer_value(json_array_get(shape, 0)),
+                     columns = json_integer_value(json_array_get(shape, 1));
+    const char *type = json_is_string(descr) ? json_string_value(descr) : "[...]"; /* a structured type */
+    if (!descr || !json_is_array(shape) || !json_is_boolean(order) || json_object_size(header) != 3 ||
+        count < 0)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: the header is not {'descr': ..., 'fortran_order': ..., 'shape': ...}: %.80s",
+                       path, text);
+    if (strcmp(type, "<f4") != 0)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: numbers of type %s: expected '<f4', as from array.astype('float32')", path, type);
+    if (json_is_true(order))
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: the array is column-major: expected row-major, as from numpy.ascontiguousarray",
+                       path);
+    if (json_array_size(shape) != 2 || columns != RT_RAY_COLUMNS)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: an array of %zu dimension%s, and rows of %" PRId64 ": expected the shape (N, %d)",
+                       path, json_array_size(shape), rt_plural(json_array_size(shape)), (int64_t)columns,
+                       RT_RAY_COLUMNS);
+    *rows = (uint64_t)count;
+    if (*rows <= RT_MAX_RAYS_A_KIND) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "%s: %" PRIu64 " rows: at most %" PRIu64 " are read", path, *rows,
+                   (uint64_t)RT_MAX_RAYS_A_KIND);
+}
+
+/* An array of float32 in C order, of shape (rows, RT_RAY_COLUMNS); the file stays open at the first row. */
+static RtStatus read_shape(FILE *file, const char *path, uint64_t *rows, RtError *error) {
+    char text[MOST_HEADER + 1];
+    struct stat info;
+    RT_TRY(read_header(file, path, text, error));
+    json_t *header = parse(text);
+    RtStatus status = check_header(header, text, path, rows, error);
+    json_decref(header);
+    RT_TRY(status);
+    const long start = ftell(file);
+    if (start < 0 || fstat(fileno(file), &info) != 0)
+        return rt_fail(error, RT_IO, "%s: its length is unknown", path);
+    const uint64_t wanted = *rows * RT_RAY_COLUMNS * sizeof(float),
+                   there = (uint64_t)info.st_size - (uint64_t)start;
+    if (wanted == there) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: %" PRIu64 " rows of %d numbers are %" PRIu64 " bytes, but %" PRIu64
+                   " follow the header: was the file cut off?",
+                   path, *rows, RT_RAY_COLUMNS, wanted, there);
+}
+
+/* ---- writing headers ---- */
+
+/* Version 1.0, padded to a multiple of 64 bytes. `descr` is the type as Python writes it, with its quotes or
+ * brackets; columns 0 means one dimension. A failed write is reported when the file is closed. */
+static void begin(FILE *out, const char *descr, uint64_t rows, uint32_t columns) {
+    char text[512], shape[64];
+    snprintf(shape, sizeof shape, columns ? "(%" PRIu64 ", %" PRIu32 ")" : "(%" PRIu64 ",)", rows, columns);
+    int length =
+        snprintf(text, sizeof text, "{'descr': %s, 'fortran_order': False, 'shape': %s, }", descr, shape);
+    assert(length > 0 && (size_t)length < sizeof text);
+    /* Magic, version, two bytes of length, the text, padding, a newline. */
+    int before = MAGIC_BYTES + 4, all = (before + length + 1 + MULTIPLE - 1) / MULTIPLE * MULTIPLE;
+    int header = all - before;
+    fwrite(MAGIC, 1, MAGIC_BYTES, out);
+    const unsigned char rest[4] = {1, 0, (unsigned char)(header & 255), (unsigned char)(header >> 8)};
+    fwrite(rest, 1, sizeof rest, out);
+    fprintf(out, "%-*s\n", header - 1, text);
+}
 
 /* ---- rays ---- */
 
 RtStatus rt_rays_save(const RtRaySet *set, const char *path, RtError *error) {
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));
-    rt_npy_begin(output.file, "'<f4'", set->count, RT_RAY_COLUMNS);
+    begin(output.file, "'<f4'", set->count, RT_RAY_COLUMNS);
     for (uint64_t i = 0; i < set->count; i++) {
         fwrite(&set->rays[i], sizeof(float), RT_RAY_COLUMNS, output.file);
     }
@@ -38,11 +165,12 @@ static const char *fault_of(const RtRay *ray) {
     return "its tmax is less than its tmin, or not a number";
 }
 
-static RtStatus read_rays(RtNpy *npy, RtRaySet *set, RtError *error) {
+static RtStatus read_rays(FILE *file, const char *path, RtRaySet *set, RtError *error) {
     float rows[BLOCK][RT_RAY_COLUMNS];
     for (uint64_t first = 0; first < set->count; first += BLOCK) {
         uint64_t count = set->count - first < BLOCK ? set->count - first : BLOCK;
-        RT_TRY(rt_npy_read(npy, count, rows[0], error));
+        if (fread(rows, sizeof rows[0], count, file) != count)
+            return rt_fail(error, RT_IO, "%s: reading failed before the last row", path);
         for (uint64_t i = 0; i < count; i++) {
             RtRay *ray = &set->rays[first + i];
             *ray = (RtRay){.kind = set->kind};
@@ -52,7 +180,7 @@ static RtStatus read_rays(RtNpy *npy, RtRaySet *set, RtError *error) {
                            "%s: row %" PRIu64
                            " (the first is 0) is not a valid ray: %s. It has origin %.9g %.9g %.9g, tmin "
                            "%.9g, direction %.9g %.9g %.9g, tmax %.9g",
-                           npy->path, first + i, fault_of(ray), (double)rows[i][0], (double)rows[i][1],
+                           path, first + i, fault_of(ray), (double)rows[i][0], (double)rows[i][1],
                            (double)rows[i][2], (double)rows[i][3], (double)rows[i][4], (double)rows[i][5],
                            (double)rows[i][6], (double)rows[i][7]);
         }
@@ -61,26 +189,26 @@ static RtStatus read_rays(RtNpy *npy, RtRaySet *set, RtError *error) {
 }
 
 RtStatus rt_rays_load(const char *path, RtRayKind kind, RtRaySet *set, RtError *error) {
-    RtNpy npy;
+    FILE *file;
+    uint64_t rows;
     *set = (RtRaySet){.kind = kind};
-    RtStatus status = rt_npy_open(&npy, path, RT_RAY_COLUMNS, RT_MAX_RAYS_A_KIND, error);
-    if (status == RT_OK && npy.rows == 0)
-        status = rt_fail(error, RT_BAD_INPUT, "%s: it contains no rays", path);
-    if (status == RT_OK) status = rt_rayset_init(set, kind, npy.rows, error);
-    if (status == RT_OK) status = read_rays(&npy, set, error);
-    rt_npy_close(&npy);
-    if (status == RT_OK) {
+    RT_TRY(rt_file_open(path, &file, error));
+    RtStatus status = read_shape(file, path, &rows, error);
+    if (status == RT_OK && rows == 0) status = rt_fail(error, RT_BAD_INPUT, "%s: it contains no rays", path);
+    if (status == RT_OK) status = rt_rayset_init(set, kind, rows, error);
+    if (status == RT_OK) status = read_rays(file, path, set, error);
+    fclose(file);
+    if (status == RT_OK)
         rt_rayset_seal(set);
-    } else {
+    else
         rt_rayset_clear(set);
-    }
     return status;
 }
 
 /* ---- answers and counts ---- */
 
 void rt_hits_put(const RtRows *rows, FILE *out) {
-    rt_npy_begin(out, rows->blocked ? "'|b1'" : "[('t', '<f4'), ('object', '<i8')]", rows->count, 0);
+    begin(out, rows->blocked ? "'|b1'" : "[('t', '<f4'), ('object', '<i8')]", rows->count, 0);
     if (rows->blocked) fwrite(rows->blocked, sizeof(bool), rows->count, out);
     for (uint64_t i = 0; rows->hits && i < rows->count; i++) {
         int64_t object = rows->hits[i].object == RT_NO_OBJECT ? -1 : (int64_t)rows->hits[i].object;
@@ -91,7 +219,7 @@ void rt_hits_put(const RtRows *rows, FILE *out) {
 
 void rt_counts_put(const RtRows *rows, FILE *out) {
 #define FIELD(name, meaning) "('" #name "', '<u8'), "
-    rt_npy_begin(out, "[" RT_TALLY_COUNTERS(FIELD) "]", rows->count, 0);
+    begin(out, "[" RT_TALLY_COUNTERS(FIELD) "]", rows->count, 0);
     fwrite(rows->tallies, sizeof(RtTally), rows->count, out);
 #undef FIELD
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Ray sets as NumPy arrays (core/text/npy.h): rays may come from any other renderer, and answers and counts
+/* Ray sets as NumPy arrays (.npy): rays may come from any other renderer, and answers and counts
  * may go to any other program. docs/guide/own-rays.md describes the files. */
 #ifndef RT_MEASURE_RAY_FILE_H
 #define RT_MEASURE_RAY_FILE_H

@@ -16,12 +16,6 @@ const char *const rt_result_files[RT_RESULT_FILE_COUNT] = {
 /* Files that are removed: all except the last, the copy of the experiment. */
 enum { RESULTS = RT_FILE_EXPERIMENT };
 
-bool rt_is_result_file(const char *name) {
-    int i = 0;
-    while (i < RT_RESULT_FILE_COUNT && strcmp(name, rt_result_files[i]) != 0) i++;
-    return i < RT_RESULT_FILE_COUNT;
-}
-
 /* The journal of results that are being removed. */
 static const char given_up[] = "{\"given_up\": true}\n";
 

@@ -53,9 +53,6 @@ extern const char *const rt_result_files[RT_RESULT_FILE_COUNT];
 #define RT_VERIFY_JOURNAL "rows.jsonl"
 #define RT_MANIFEST       "manifest.json"
 
-/* Whether `name` is a file of result directories. */
-bool rt_is_result_file(const char *name);
-
 /* *goes_on gets whether the start continues a journal. Rejects results that must not be touched: any by a
  * fresh start, and those without a journal by one that resumes, unless they were given up. */
 RtStatus rt_result_files_look(const char *directory, const char *journal, RtStart start, bool *goes_on,

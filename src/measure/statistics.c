@@ -106,7 +106,7 @@ RtEstimate rt_estimate_ratio(const double *over, const double *under, uint32_t c
 /* ---- unpaired ---- */
 
 /* The normal distribution is accurate enough for more measurements of both together. */
-enum { UNPAIRED_EXACT = 60, NORMAL_STEPS = 300 };
+enum { UNPAIRED_EXACT = 60, STEPS = 300 };
 
 /* How many of the smallest of n * m pairs lie below the interval: the largest k with P(U < k) <= tail, where
  * U, the number of pairs in which one of m is less than one of n, has its distribution if both are alike. The
@@ -127,16 +127,27 @@ static uint64_t outside_exactly(uint32_t n, uint32_t m, double tail) {
     return pairs;
 }
 
-/* How much of the normal distribution lies above z >= 0: the integral of its density, by Simpson's rule. */
+/* The integral of a density from `from` over 2 * STEPS steps, by Simpson's rule. */
+static double integral(double (*density)(double x, uint32_t freedom), uint32_t freedom, double from,
+                       double step) {
+    double sum = 0;
+    for (int i = 0; i <= 2 * STEPS; i++) {
+        const double weight = i == 0 || i == 2 * STEPS ? 1 : i % 2 ? 4 : 2;
+        sum += weight * density(from + i * step, freedom);
+    }
+    return sum * step / 3;
+}
+
+/* Up to a constant. */
+static double normal_density(double x, uint32_t freedom) {
+    (void)freedom;
+    return rt_power(2.7182818284590452, -0.5 * x * x);
+}
+
+/* How much of the normal distribution lies above z >= 0. */
 static double normal_tail(double z) {
     const double root = 2.5066282746310002; /* sqrt(2 pi), the area under e^(-x^2 / 2) */
-    const double e = 2.7182818284590452, step = 12.0 / (2 * NORMAL_STEPS);
-    double sum = 0;
-    for (int i = 0; i <= 2 * NORMAL_STEPS; i++) {
-        double x = z + i * step, weight = i == 0 || i == 2 * NORMAL_STEPS ? 1 : i % 2 ? 4 : 2;
-        sum += weight * rt_power(e, -0.5 * x * x);
-    }
-    return sum * step / 3 / root;
+    return integral(normal_density, 0, z, 12.0 / (2 * STEPS)) / root;
 }
 
 /* By the normal approximation, z by the bisection of its tail. */
@@ -156,9 +167,10 @@ static uint64_t outside_nearly(double n, double m, double tail) {
 RtStatus rt_estimate_unpaired(const double *over, uint32_t over_count, const double *under,
                               uint32_t under_count, double coverage, RtEstimate *estimate, RtError *error) {
     assert(over_count >= 1 && under_count >= 1);
+    RT_ARENA(arena);
     size_t count = (size_t)over_count * under_count, used = 0;
-    double *ratios = rt_alloc(count, sizeof(double)), tail = 0.5 * (1 - coverage);
-    if (!ratios) return rt_fail_memory(error, "ratios", count * sizeof(double));
+    double *ratios = rt_arena_alloc(&arena, count, sizeof(double)), tail = 0.5 * (1 - coverage);
+    RT_TRY(rt_arena_check(&arena, "ratios", error));
     for (uint32_t i = 0; i < over_count; i++) {
         for (uint32_t k = 0; k < under_count; k++) ratios[used++] = over[i] / under[k];
     }
@@ -170,7 +182,6 @@ RtStatus rt_estimate_unpaired(const double *over, uint32_t over_count, const dou
                              .low = ratios[out],
                              .high = ratios[count - 1 - out],
                              .least = ratios[0]};
-    rt_free(ratios);
     return RT_OK;
 }
 
@@ -188,8 +199,6 @@ uint32_t rt_unpaired_rounds(double coverage) {
 
 /* ---- Student's t ---- */
 
-enum { STUDENT_STEPS = 300 };
-
 /* Student's density of t = sqrt(freedom) 2 w / (1 - w^2), times dt / dw, up to a constant: it has no tail. */
 static double student_density(double w, uint32_t freedom) {
     double density = 1 / (1 + w * w), power = (1 - w * w) / (1 + w * w);
@@ -199,15 +208,9 @@ static double student_density(double w, uint32_t freedom) {
     return density;
 }
 
-/* The integral from w to 1, by Simpson's rule. */
+/* The integral from w to 1. */
 static double student_tail(double w, uint32_t freedom) {
-    const double step = (1 - w) / (2 * STUDENT_STEPS);
-    double sum = 0;
-    for (int i = 0; i <= 2 * STUDENT_STEPS; i++) {
-        double weight = i == 0 || i == 2 * STUDENT_STEPS ? 1 : i % 2 ? 4 : 2;
-        sum += weight * student_density(w + i * step, freedom);
-    }
-    return sum * step / 3;
+    return integral(student_density, freedom, w, (1 - w) / (2 * STEPS));
 }
 
 /* By bisection of w. The last quantile is kept, because tables ask for the same one for each cell. */

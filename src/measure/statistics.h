@@ -18,11 +18,13 @@
 #ifndef RT_MEASURE_STATISTICS_H
 #define RT_MEASURE_STATISTICS_H
 
-#include "measure/rounds.h"
+#include "core/base/status.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
-#define RT_FULL_ROUNDS 6 /* the fewest measurements whose interval covers 95 % */
+#define RT_MAX_ROUNDS  1000 /* most measurements of one runner */
+#define RT_FULL_ROUNDS 6    /* the fewest measurements whose interval covers 95 % */
 
 typedef struct RtEstimate {
     double median, low, high; /* low..high: the interval of the median */

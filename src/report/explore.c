@@ -7,7 +7,6 @@
 #include "explore_js.h"
 #include "picture/canvas.h"
 #include "report/explore_record.h"
-#include "report/explore_shapes.h"
 #include "report/page.h"
 
 enum { SCALE_COLORS = 16 };

@@ -1,15 +1,261 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/explore_record.h"
 
+#include "core/base/elementary.h"
 #include "core/base/memory.h"
-#include "report/explore_shapes.h"
+#include "report/page.h"
 
 #include <string.h>
 #include <xxhash.h>
+#include <zlib.h>
 
-enum { MOST_CANDIDATES = 16, RAW_PER_BYTE = 3 }; /* base64 of compressed data is a third of it, or less */
+/* ---- bytes ---- */
+
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "numbers are written as they lie in memory");
+
+void rt_bytes_clear(RtBytes *bytes) {
+    rt_free(bytes->data);
+    *bytes = (RtBytes){0};
+}
+
+/* Grows by doubling (rt_reserve). */
+void rt_bytes_put(RtBytes *bytes, const void *data, size_t size) {
+    if (size == 0) return; /* `data` may be NULL */
+    if (bytes->status == RT_OK)
+        bytes->status = rt_reserve(&bytes->data, &bytes->capacity, bytes->count + (uint64_t)size, 1, NULL);
+    if (bytes->status != RT_OK) return;
+    memcpy(bytes->data + bytes->count, data, size);
+    bytes->count += (uint32_t)size;
+}
+
+static void put_float(RtBytes *bytes, float value) {
+    rt_bytes_put(bytes, &value, sizeof value);
+}
+
+static void put_vector(RtBytes *bytes, RtVec3 v) {
+    rt_bytes_put(bytes, v.at, 3 * sizeof(float));
+}
+
+/* lo, then hi: six floats. */
+static void put_box(RtBytes *bytes, const RtBox *box) {
+    put_vector(bytes, box->lo);
+    put_vector(bytes, box->hi);
+}
+
+void rt_bytes_put_number(RtBytes *bytes, uint64_t value) {
+    uint8_t out[10];
+    size_t size = 0;
+    for (; value >= 128; value >>= 7) out[size++] = (uint8_t)(value | 128);
+    out[size++] = (uint8_t)value;
+    rt_bytes_put(bytes, out, size);
+}
+
+/* Appends four bytes, to be filled in by end_length with the number of bytes that follow them. Returns their
+ * place. */
+static uint32_t begin_length(RtBytes *bytes) {
+    uint32_t place = bytes->count, length = 0;
+    rt_bytes_put(bytes, &length, sizeof length);
+    return place;
+}
+
+static void end_length(RtBytes *bytes, uint32_t place) {
+    const uint32_t length = bytes->count - place - (uint32_t)sizeof(uint32_t);
+    if (bytes->status == RT_OK) memcpy(bytes->data + place, &length, sizeof length);
+}
+
+RtStatus rt_bytes_compress(RtBytes *bytes, RtError *error) {
+    uLongf size = compressBound(bytes->count);
+    uint8_t *data = bytes->status == RT_OK ? rt_alloc_unset(size, 1) : NULL;
+    if (!data || compress(data, &size, bytes->data, bytes->count) != Z_OK || size > UINT32_MAX) {
+        rt_free(data);
+        return rt_fail_memory(error, "the data of a page", size);
+    }
+    rt_bytes_clear(bytes);
+    *bytes = (RtBytes){.data = data, .count = (uint32_t)size, .capacity = (uint32_t)size};
+    return RT_OK;
+}
+
+void rt_bytes_embed(const RtBytes *bytes, const char *name, FILE *out) {
+    fprintf(out, "<script type=\"text/plain\" id=\"part-%s\">", name);
+    rt_page_data_url(out, "application/zlib", bytes->data, bytes->count);
+    fputs("</script>\n", out);
+}
+
+/* ---- objects ---- */
+
+enum { CORNERS = 16 }; /* of a cone's circles */
+
+typedef struct Shapes {
+    const RtScene *scene;
+    uint32_t every; /* kth object */
+    uint32_t counts[3];
+    RtBytes parts[3]; /* spheres, triangles, boxes */
+} Shapes;
+
+enum { SPHERES, TRIANGLES, BOXES };
+
+static void end_part(Shapes *shapes, int part, uint32_t object) {
+    rt_bytes_put_number(&shapes->parts[part], shapes->scene->material_of[object]);
+    shapes->counts[part]++;
+}
+
+static void put_triangle(Shapes *shapes, uint32_t object, RtVec3 a, RtVec3 b, RtVec3 c) {
+    RtBytes *out = &shapes->parts[TRIANGLES];
+    put_vector(out, a);
+    put_vector(out, b);
+    put_vector(out, c);
+    end_part(shapes, TRIANGLES, object);
+}
+
+/* A fan, which is exact for convex ones. */
+static void put_polygon(Shapes *shapes, uint32_t object, const RtVec3 *vertices, uint32_t count) {
+    for (uint32_t i = 2; i < count; i++)
+        put_triangle(shapes, object, vertices[0], vertices[i - 1], vertices[i]);
+}
+
+/* The point of a circle around the axis, in direction cosine * u + sine * v. */
+static RtVec3 on_circle(RtVec3 center, float radius, RtVec3d u, RtVec3d v, uint32_t corner) {
+    const RtTurn turn = rt_turn(360.0 * corner / CORNERS);
+    RtVec3d out = rt_add_scaledd(rt_scaled(u, turn.cosine), v, turn.sine);
+    return rt_narrow(rt_add_scaledd(rt_widen(center), out, (double)radius));
+}
+
+static void put_cone(Shapes *shapes, uint32_t object, const RtCone *cone) {
+    RtVec3d frame[3];
+    RtVec3d aside = {{0, 0, 0}};
+    int least = 0;
+    for (int a = 1; a < 3; a++) {
+        if (fabs(cone->axis.at[a]) < fabs(cone->axis.at[least])) least = a;
+    }
+    aside.at[least] = 1;
+    frame[0] = rt_normalized(rt_crossd(cone->axis, aside));
+    frame[1] = rt_crossd(cone->axis, frame[0]);
+    for (uint32_t i = 0; i < CORNERS; i++) {
+        RtVec3 a = on_circle(cone->base, cone->base_radius, frame[0], frame[1], i);
+        RtVec3 b = on_circle(cone->base, cone->base_radius, frame[0], frame[1], i + 1);
+        RtVec3 c = on_circle(cone->apex, cone->apex_radius, frame[0], frame[1], i);
+        RtVec3 d = on_circle(cone->apex, cone->apex_radius, frame[0], frame[1], i + 1);
+        put_triangle(shapes, object, a, b, d);
+        put_triangle(shapes, object, a, d, c);
+    }
+}
+
+static void put_drawn(Shapes *shapes, uint32_t object) {
+    const RtGeometry *g = &shapes->scene->geometry;
+    uint32_t i = rt_ref_index(g->objects[object]);
+    switch (rt_ref_shape(g->objects[object])) {
+    case RT_SHAPE_SPHERE:
+        put_vector(&shapes->parts[SPHERES], g->spheres[i].center);
+        put_float(&shapes->parts[SPHERES], g->spheres[i].radius);
+        end_part(shapes, SPHERES, object);
+        break;
+    case RT_SHAPE_POLYGON:
+        put_polygon(shapes, object, rt_polygon_vertices(g, i), g->polygons[i].count);
+        break;
+    case RT_SHAPE_TRIANGLE: put_polygon(shapes, object, g->triangles[i].v, 3); break;
+    case RT_SHAPE_CONE: put_cone(shapes, object, &g->cones[i]); break;
+    case RT_SHAPE_CSG:
+        put_box(&shapes->parts[BOXES], &g->boxes[object]);
+        end_part(shapes, BOXES, object);
+        break;
+    case RT_SHAPE_COUNT: break;
+    }
+}
+
+uint32_t rt_explore_objects(const RtScene *scene, RtBytes *out) {
+    uint32_t count = scene->geometry.object_count;
+    Shapes shapes = {.scene = scene, .every = 1 + (count > 0 ? (count - 1) / RT_MAX_SHOWN_OBJECTS : 0)};
+    for (uint32_t i = 0; i < count; i += shapes.every) put_drawn(&shapes, i);
+    for (int part = 0; part < 3; part++) {
+        const RtBytes *bytes = &shapes.parts[part];
+        rt_bytes_put_number(out, shapes.counts[part]);
+        rt_bytes_put(out, bytes->data, bytes->count);
+        if (bytes->status != RT_OK) out->status = bytes->status;
+        rt_bytes_clear(&shapes.parts[part]);
+    }
+    return shapes.every;
+}
+
+/* ---- boxes ---- */
+
+enum { MOST_LEVELS = 256 };
+
+typedef struct Levels {
+    uint32_t count[MOST_LEVELS], seen[MOST_LEVELS]; /* boxes of a level; the last has all deeper ones, too */
+    RtShownBoxes *result;
+    RtBytes *out;
+} Levels;
+
+static uint32_t level_of(const RtBoxView *view) {
+    return view->depth < MOST_LEVELS ? view->depth : MOST_LEVELS - 1;
+}
+
+static void count_box(void *context, const RtBoxView *view) {
+    ((Levels *)context)->count[level_of(view)]++;
+}
+
+static void put_shown_box(void *context, const RtBoxView *view) {
+    Levels *levels = context;
+    RtShownBoxes *result = levels->result;
+    uint32_t level = level_of(view), number = levels->seen[level]++;
+    bool left_out = level > result->level || (level == result->level && number % result->every != 0);
+    if (left_out || rt_box_is_empty(*view->box)) return;
+    put_box(levels->out, view->box);
+    rt_bytes_put_number(levels->out, view->depth);
+    rt_bytes_put_number(levels->out, view->leaf ? 1 + (uint64_t)view->objects : 0);
+    result->shown++;
+}
+
+RtShownBoxes rt_explore_boxes(const RtAccel *accel, RtBytes *out) {
+    while (accel && !accel->ops->each_box) accel = accel->below;
+    RtShownBoxes result = {.layer = accel, .level = UINT32_MAX, .every = 1};
+    Levels levels = {.result = &result, .out = out};
+    if (!accel) return result;
+    accel->ops->each_box(accel, (RtBoxViewer){count_box, &levels});
+    for (uint32_t i = 0; i < MOST_LEVELS; i++) {
+        uint32_t room = RT_MAX_SHOWN_BOXES - (result.level == UINT32_MAX ? result.all : 0);
+        result.all += levels.count[i];
+        if (result.level != UINT32_MAX || levels.count[i] <= room) continue;
+        result.level = i;
+        result.every = room ? 1 + (levels.count[i] - 1) / room : UINT32_MAX;
+    }
+    accel->ops->each_box(accel, (RtBoxViewer){put_shown_box, &levels});
+    return result;
+}
+
+/* ---- cells ---- */
+
+/* The topmost layer of `accel` that looks rays of a kind up in cells, or NULL. */
+static const RtAccel *cell_layer(const RtAccel *accel, uint32_t kind) {
+    while (accel && !(accel->ops->find_cell && accel->ops->kinds >> kind & 1)) accel = accel->below;
+    return accel;
+}
+
+static void put_side(const RtAccel *layer, uint32_t light, int side, RtBytes *out) {
+    const int axis = side / 2;
+    for (int i = 0; i < RT_CELL_MAP * RT_CELL_MAP; i++) {
+        const int column = i % RT_CELL_MAP, row = i / RT_CELL_MAP;
+        RtRay ray = {.kind = RT_RAY_SHADOW, .source = light};
+        RtCellView cell;
+        ray.dir.at[axis] = side % 2 ? -1 : 1; /* shadow rays point at the light */
+        ray.dir.at[(axis + 1) % 3] = 1 - 2 * ((float)column + 0.5f) / RT_CELL_MAP;
+        ray.dir.at[(axis + 2) % 3] = 1 - 2 * ((float)row + 0.5f) / RT_CELL_MAP;
+        const bool found = layer->ops->find_cell(layer, &ray, &cell);
+        rt_bytes_put_number(out, found ? (uint64_t)cell.number + 1 : 0);
+        rt_bytes_put_number(out, found ? cell.length : 0);
+    }
+}
+
+void rt_explore_cells(const RtAccel *accel, RtBytes *out) {
+    const RtAccel *layer = cell_layer(accel, RT_RAY_SHADOW);
+    for (uint32_t light = 0; layer && light < accel->scene->light_count; light++) {
+        for (int side = 0; side < 6; side++) put_side(layer, light, side, out);
+    }
+}
 
 /* ---- events ---- */
+
+enum { MOST_CANDIDATES = 16, RAW_PER_BYTE = 3 }; /* base64 of compressed data is a third of it, or less */
 
 static bool same_form(const RtPathRow *a, const RtPathRow *b) {
     return a->kind == b->kind && strcmp(a->what, b->what) == 0 && a->leaf == b->leaf &&
@@ -94,7 +340,7 @@ void rt_recorded_events(const RtRecordedPaths *paths, RtBytes *out) {
         rt_bytes_put_number(out, event->form);
         rt_bytes_put_number(out, event->index);
         rt_bytes_put_number(out, event->boxed);
-        if (event->boxed) rt_bytes_put_box(out, &event->box);
+        if (event->boxed) put_box(out, &event->box);
     }
 }
 
@@ -108,7 +354,7 @@ static void put_object(RtBytes *out, uint32_t object) {
 
 static void put_cell(RtBytes *out, const RtAccel *accel, const RtRay *ray) {
     RtCellView cell;
-    accel = rt_cell_layer(accel, ray->kind);
+    accel = cell_layer(accel, ray->kind);
     if (!accel || !accel->ops->find_cell(accel, ray, &cell)) {
         rt_bytes_put_number(out, 0);
         return;
@@ -123,7 +369,7 @@ static RtStatus put_path(RtRecordedPixels *recording, RtRecordedPaths *to, const
                          RtError *error) {
     uint32_t kept = path->count < RT_MAX_RECORDED_ROWS ? path->count : RT_MAX_RECORDED_ROWS;
     put_object(&to->paths, path->hit.object);
-    rt_bytes_put_float(&to->paths, path->hit.t);
+    put_float(&to->paths, path->hit.t);
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++)
         rt_bytes_put_number(&to->paths, rt_tally_get(&path->tally, i));
     put_cell(&to->paths, to->accel, &path->ray);
@@ -134,7 +380,7 @@ static RtStatus put_path(RtRecordedPixels *recording, RtRecordedPaths *to, const
         uint32_t event;
         RT_TRY(find_event(to, &path->rows[i], &event, error));
         rt_bytes_put_number(&to->paths, event);
-        if (is_hit(&path->rows[i])) rt_bytes_put_float(&to->paths, path->rows[i].t);
+        if (is_hit(&path->rows[i])) put_float(&to->paths, path->rows[i].t);
     }
     return RT_OK;
 }
@@ -159,7 +405,7 @@ static RtStatus put_candidates(RtBytes *out, const RtAccel *base, RtRay ray, RtE
     rt_bytes_put_number(out, count);
     for (uint32_t i = 0; i < count; i++) {
         put_object(out, hits[i].object);
-        rt_bytes_put_float(out, hits[i].t);
+        put_float(out, hits[i].t);
     }
     return RT_OK;
 }
@@ -169,19 +415,19 @@ static RtStatus put_ray(RtRecordedPixels *recording, const RtTreeRay *ray, RtErr
     const RtAccel *first = recording->of[0].accel;
     bool looked_up = false;
     for (uint32_t i = 0; i < recording->count; i++)
-        looked_up |= rt_cell_layer(recording->of[i].accel, RT_RAY_PRIMARY) != NULL;
+        looked_up |= cell_layer(recording->of[i].accel, RT_RAY_PRIMARY) != NULL;
     rt_bytes_put_number(out, ray->ray.kind);
     rt_bytes_put_number(out, ray->level);
     rt_bytes_put_number(out, ray->parent == RT_NO_RAY ? 0 : (uint64_t)ray->parent + 1);
     rt_bytes_put_number(out, ray->ray.source);
     rt_bytes_put_number(out, (uint64_t)ray->total + 2 * (uint64_t)ray->cut);
-    rt_bytes_put_vector(out, ray->ray.org);
-    rt_bytes_put_vector(out, ray->ray.dir);
-    rt_bytes_put_float(out, ray->ray.tmax);
+    put_vector(out, ray->ray.org);
+    put_vector(out, ray->ray.dir);
+    put_float(out, ray->ray.tmax);
     put_object(out, ray->hit.object);
-    rt_bytes_put_float(out, ray->hit.t);
-    rt_bytes_put_vector(out, ray->added);
-    if (ray->ray.kind == RT_RAY_SHADOW) rt_bytes_put_vector(out, rt_narrow(ray->terms[RT_TERM_DIFFUSE]));
+    put_float(out, ray->hit.t);
+    put_vector(out, ray->added);
+    if (ray->ray.kind == RT_RAY_SHADOW) put_vector(out, rt_narrow(ray->terms[RT_TERM_DIFFUSE]));
     if (ray->ray.kind != RT_RAY_PRIMARY) return RT_OK;
     if (looked_up) return put_candidates(out, rt_accel_base(first), ray->ray, error);
     rt_bytes_put_number(out, 0);
@@ -190,7 +436,7 @@ static RtStatus put_ray(RtRecordedPixels *recording, const RtTreeRay *ray, RtErr
 
 static uint32_t begin_pixel(RtBytes *bytes, uint32_t number) {
     rt_bytes_put_number(bytes, number);
-    return rt_bytes_begin(bytes);
+    return begin_length(bytes);
 }
 
 static RtStatus record_tree(RtRecordedPixels *recording, uint32_t number, const RtRayTree *tree,
@@ -207,8 +453,8 @@ static RtStatus record_tree(RtRecordedPixels *recording, uint32_t number, const 
             RT_TRY(status);
         }
     }
-    rt_bytes_end(&recording->rays, place);
-    for (uint32_t i = 0; i < recording->count; i++) rt_bytes_end(&recording->of[i].paths, places[i]);
+    end_length(&recording->rays, place);
+    for (uint32_t i = 0; i < recording->count; i++) end_length(&recording->of[i].paths, places[i]);
     recording->ray_count += tree->count;
     return RT_OK;
 }

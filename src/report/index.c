@@ -1,18 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Each result directory is loaded once, in the order of their names, and becomes an entry for both pages; the
  * entries are then put together in the order of sections. */
-#include "report/index.h"
+#include "report/report.h"
 
 #include "claims/claims.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
-#include "core/text/csv.h"
 #include "core/text/json.h"
 #include "measure/machine.h"
 #include "report/page.h"
-#include "results/frame_table.h"
-#include "results/manifest.h"
 #include "results/result_directory.h"
+#include "results/result_tables.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -26,7 +24,7 @@ enum { MAX_ORIGIN = 256, MAX_ANSWER = 1200 };
 typedef struct Entry {
     char name[RT_MAX_LABEL];   /* of the directory: one experiment may have several, of different systems */
     char section[RT_MAX_WORD]; /* or "" */
-    char question[RT_MAX_TEXT], answer[MAX_ANSWER];
+    char question[RT_MAX_TEXT], answer[MAX_ANSWER]; /* of the finding the first sentence */
     char build[MAX_ORIGIN], machine[MAX_ORIGIN];
     char again[MAX_ORIGIN]; /* the build that counted some scenes again, or "" */
     char plot[RT_MAX_PATH]; /* seen from the index, or "" */
@@ -65,22 +63,6 @@ static int first_sentence(const char *text) {
     while (text[i] && !(strchr(".!?", text[i]) && text[i + 1] == ' ' && isupper((unsigned char)text[i + 2])))
         i++;
     return (int)(i + (text[i] != '\0'));
-}
-
-/* Writes the beginning of a sentence for a line of a table: it ends where an explanation or an addition
- * begins, unless that is early. */
-static void put_brief(FILE *out, const char *text) {
-    enum { EARLY = 40, MOST = 400 };
-    char brief[MOST + 8];
-    int length = first_sentence(text);
-    for (int i = EARLY; i + 1 < length; i++) {
-        const bool ends =
-            (strchr(";:", text[i]) && text[i + 1] == ' ') || (text[i] == ' ' && text[i + 1] == '(');
-        if (ends) length = i;
-    }
-    const bool whole = length == first_sentence(text);
-    snprintf(brief, sizeof brief, "%.*s%s", length < MOST ? length : MOST, text, whole ? "" : " ...");
-    put_markdown(out, brief);
 }
 
 /* ---- a directory ---- */
@@ -144,31 +126,43 @@ static RtStatus read_experiment(Index *index, Entry *entry, const char *director
     return status;
 }
 
-static uint64_t sum_of(const RtCsv *csv, const char *column) {
+/* The sum of a column of verify.csv, whose fields may be quoted. */
+static uint64_t sum_of(const char *csv, const char *name) {
     uint64_t sum = 0;
-    const uint32_t at = rt_csv_find(csv, column);
-    for (uint32_t i = 0; i < csv->rows; i++) sum += strtoull(rt_csv_field(csv, i, at), NULL, 10);
+    uint32_t column = 0, wanted = UINT32_MAX;
+    bool header = true;
+    for (const char *at = csv, *end; *at; at = end + (*end != '\0')) {
+        bool quoted = false;
+        for (end = at; *end && (quoted || !strchr(",\n", *end)); end++) quoted ^= *end == '"';
+        if (header && strncmp(at, name, (size_t)(end - at)) == 0 && name[end - at] == '\0') wanted = column;
+        if (!header && column == wanted) sum += strtoull(at, NULL, 10);
+        column = *end == ',' ? column + 1 : 0;
+        header &= *end != '\n';
+    }
     return sum;
 }
 
 static RtStatus read_verification(Entry *entry, const char *directory, RtError *error) {
-    RtCsv csv = {0};
-    json_t *manifest = NULL;
-    char path[RT_MAX_PATH];
+    enum { MOST_BYTES = 1 << 24 };
+    char path[RT_MAX_PATH], *csv;
+    size_t size;
+    uint32_t rows = 0;
+    json_t *manifest;
     RT_TRY(rt_path_join(directory, rt_result_files[RT_FILE_VERIFY_CSV], path, error));
-    RtStatus status = rt_csv_read(&csv, path, error);
-    if (status == RT_OK) status = rt_manifest_read(directory, &manifest, error);
+    RT_TRY(rt_manifest_read(directory, &manifest, error));
+    RtStatus status = rt_file_read_text(path, MOST_BYTES, &csv, &size, error);
     if (status == RT_OK) {
+        for (const char *c = strchr(csv, '\n'); c && c[1]; c = strchr(c + 1, '\n')) rows++;
         strcpy(entry->section, "verification");
         note_origin(entry, manifest);
         snprintf(entry->answer, MAX_ANSWER,
                  "%" PRIu64 " comparisons in %" PRIu32 " row%s: %" PRIu64
                  " answers to nearest are wrong, %" PRIu64 " to occluded.",
-                 sum_of(&csv, "rays"), csv.rows, rt_plural(csv.rows), sum_of(&csv, "wrong"),
-                 sum_of(&csv, "occluded_wrong"));
+                 sum_of(csv, "rays"), rows, rt_plural(rows), sum_of(csv, "wrong"),
+                 sum_of(csv, "occluded_wrong"));
+        rt_free(csv);
     }
     json_decref(manifest);
-    rt_csv_clear(&csv);
     return status;
 }
 
@@ -236,39 +230,28 @@ static void title_of(const char *section, char title[RT_MAX_WORD]) {
     title[0] = (char)toupper((unsigned char)title[0]);
 }
 
-static const char *origin_of(const Index *index, uint32_t i, size_t origin) {
-    return (const char *)&index->entries[i] + origin;
-}
-
-/* Of how many entries `origin` (an offset) has the value of entry i; 0 if it has none, or an earlier entry
- * has it. */
-static uint32_t count_first(const Index *index, uint32_t i, size_t origin) {
-    const char *value = origin_of(index, i, origin);
-    uint32_t count = 0;
-    for (uint32_t k = 0; k < index->count; k++) {
-        const bool same = *value && strcmp(value, origin_of(index, k, origin)) == 0;
-        if (same && k < i) return 0;
-        count += same;
-    }
-    return count;
-}
-
 /* "Measured by raytally 0.1.0 (abc); raytally 0.2.0 (def): one, two; ...": the most frequent value of
- * `origin`, then each other one with its entries. */
+ * `origin` (an offset in Entry), then each other one with its entries. */
 static void put_origins(const Index *index, size_t origin, const char *before, FILE *out) {
-    uint32_t most = 0;
-    for (uint32_t i = 0; i < index->count; i++)
-        if (count_first(index, i, origin) > count_first(index, most, origin)) most = i;
-    if (index->count == 0 || count_first(index, most, origin) == 0) return;
-    fprintf(out, "%s%s", before, origin_of(index, most, origin));
+    json_t *origins = json_object(), *names, *name; /* {value: [names]}, in the order of the first entries */
+    const char *value, *most = NULL;
+    size_t k;
     for (uint32_t i = 0; i < index->count; i++) {
-        if (i == most || count_first(index, i, origin) == 0) continue;
-        fprintf(out, "; %s", origin_of(index, i, origin));
-        for (uint32_t k = i, named = 0; k < index->count; k++)
-            if (strcmp(origin_of(index, i, origin), origin_of(index, k, origin)) == 0)
-                fprintf(out, "%s%s", named++ ? ", " : ": ", index->entries[k].name);
+        value = (const char *)&index->entries[i] + origin;
+        if (*value && !json_object_get(origins, value)) json_object_set_new(origins, value, json_array());
+        json_array_append_new(json_object_get(origins, value), json_string(index->entries[i].name));
     }
-    fputc('.', out);
+    json_object_foreach(origins, value, names) {
+        if (!most || json_array_size(names) > json_array_size(json_object_get(origins, most))) most = value;
+    }
+    if (most) fprintf(out, "%s%s", before, most);
+    json_object_foreach(origins, value, names) {
+        if (value == most) continue;
+        fprintf(out, "; %s", value);
+        json_array_foreach(names, k, name) fprintf(out, "%s%s", k ? ", " : ": ", json_string_value(name));
+    }
+    if (most) fputc('.', out);
+    json_decref(origins);
 }
 
 /* ---- pages ---- */
@@ -296,14 +279,16 @@ static void put_card(const Entry *entry, FILE *out) {
 }
 
 static void put_row(const Entry *entry, FILE *out) {
+    char question[RT_MAX_TEXT];
     fputs("| [", out);
     put_markdown(out, entry->name);
     fputs("](", out);
     rt_page_path(out, entry->name);
     fputs(") | ", out);
-    put_brief(out, entry->question);
+    snprintf(question, sizeof question, "%.*s", first_sentence(entry->question), entry->question);
+    put_markdown(out, question);
     fputs(" | ", out);
-    put_brief(out, entry->answer);
+    put_markdown(out, entry->answer);
     fputs(" |\n", out);
 }
 

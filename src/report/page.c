@@ -5,7 +5,6 @@
 #include "core/base/words.h"
 #include "page_css.h"
 #include "page_js.h"
-#include "results/claims_changed.h"
 
 #include <ctype.h>
 #include <inttypes.h>

@@ -1,17 +1,269 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/plot.h"
 
+#include "accel/accel.h"
 #include "core/base/memory.h"
 #include "core/base/process.h"
 #include "core/base/words.h"
-#include "report/color.h"
-#include "report/sweep_data.h"
 
 #include <ctype.h>
 #include <errno.h>
 #include <fnmatch.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* ---- colours ---- */
+
+/* How far from its colour candidate `k` of `count` with the same one is drawn: the only one not at all,
+ * several evenly from dark to light in the order of the experiment. No part of a dark colour is darker. */
+static double shade(uint32_t color, uint32_t k, uint32_t count) {
+    const bool dark = (color & 0xff) < 0x40 && (color >> 8 & 0xff) < 0x40 && color >> 16 < 0x40;
+    const double darkest = dark ? 0 : -0.6, lightest = dark ? 0.65 : 0.5;
+    return count == 1 ? 0 : darkest + (lightest - darkest) * k / (count - 1);
+}
+
+/* From black, -1, to white, 1. */
+static uint32_t shaded(uint32_t color, double part) {
+    uint32_t out = 0;
+    for (int shift = 16; shift >= 0; shift -= 8) {
+        const double channel = color >> shift & 255, to = part < 0 ? 0 : 255;
+        const double size = part < 0 ? -part : part;
+        out = out << 8 | (uint32_t)(channel + size * (to - channel) + 0.5);
+    }
+    return out;
+}
+
+void rt_candidate_color(const RtExperiment *experiment, uint32_t candidate, char color[RT_COLOR_CHARS]) {
+    enum { NULL_RUN = 0xbbbbbb };
+    uint32_t out = NULL_RUN;
+    if (candidate < experiment->candidate_count) {
+        const uint32_t own = rt_accel_color(experiment->candidates[candidate].spec);
+        uint32_t earlier = 0, all = 0;
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            bool same = rt_accel_color(experiment->candidates[c].spec) == own;
+            earlier += same && c < candidate;
+            all += same;
+        }
+        out = shaded(own, shade(own, earlier, all));
+    }
+    snprintf(color, RT_COLOR_CHARS, "#%06x", (unsigned)(out & 0xffffff));
+}
+
+/* gnuplot's pointtype, and its dashtype, 1..5, of line `i`, or of candidate `i` in the order of the
+ * experiment: for grey print no two of 50 share both. */
+static int marker_of(uint32_t i) {
+    /* Filled and open circles, squares, triangles, diamonds, ... */
+    static const int markers[] = {7, 5, 9, 11, 13, 6, 4, 8, 10, 12};
+    return markers[i % 10];
+}
+
+static int dash_of(uint32_t i) {
+    return (int)(1 + i / 10 % 5);
+}
+
+/* ---- data of sweeps ---- */
+
+/* What experiments/sweeps.gp draws of a swept parameter: the cost of accelerators over its values, in a block
+ * for each group of scenes that differ only in the parameter, and there a line for each accelerator. */
+
+#define MAX_LINE_NAME (RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2))
+
+/* The values of a parameter in the order of the experiment, and their places on the axis: words are numbered.
+ */
+typedef struct Axis {
+    RtSweptKey key;
+    const char *values[RT_MAX_SWEEP_VALUES];
+    double places[RT_MAX_SWEEP_VALUES];
+    uint32_t count;
+    uint32_t group_of[RT_MAX_WORKLOADS], line_of[RT_MAX_CANDIDATES]; /* the first of each */
+} Axis;
+
+typedef struct Point {
+    double x;
+    const char *value;
+    uint32_t workload, candidate;
+} Point;
+
+/* Scenes are in one group, and candidates on one line, if they have the same name without the parameter. */
+static void name_without(const RtExperiment *experiment, const RtSweptKey *key, bool scene, uint32_t i,
+                         char name[MAX_LINE_NAME]) {
+    const RtWorkload *workload = &experiment->workloads[scene ? i : 0];
+    const RtCandidate *candidate = &experiment->candidates[scene ? 0 : i];
+    if (key->scene == scene) {
+        snprintf(name, MAX_LINE_NAME, "%s", scene ? workload->stem : candidate->stem);
+        rt_swept_name(scene ? &workload->swept : &candidate->swept, key->key, name, MAX_LINE_NAME);
+    } else {
+        snprintf(name, MAX_LINE_NAME, "%s", scene ? workload->label : candidate->label);
+    }
+}
+
+/* first[0..count): the first scene or candidate with the same name. */
+static void find_first(const RtExperiment *experiment, const RtSweptKey *key, bool scene, uint32_t count,
+                       uint32_t *first) {
+    char name[MAX_LINE_NAME], other[MAX_LINE_NAME];
+    for (uint32_t i = 0; i < count; i++) {
+        name_without(experiment, key, scene, i, name);
+        for (first[i] = 0; first[i] < i; first[i]++) {
+            name_without(experiment, key, scene, first[i], other);
+            if (strcmp(name, other) == 0) break;
+        }
+    }
+}
+
+static bool is_measured(const RtResults *results, uint32_t t, uint32_t c) {
+    const RtCost cost = rt_results_cost(results, t, c, RT_ALL_RAYS);
+    return results->workloads[t].known && (!isnan(cost.seconds.median) || !isnan(cost.object_tests));
+}
+
+static double place_of(const Axis *axis, const char *value) {
+    double x;
+    if (axis->key.number && rt_swept_number(value, &x)) return x;
+    for (uint32_t i = 0; i < axis->count; i++) {
+        if (strcmp(axis->values[i], value) == 0) return i;
+    }
+    return axis->count;
+}
+
+static void add_value(Axis *axis, const char *value) {
+    const double x = place_of(axis, value);
+    for (uint32_t i = 0; i < axis->count; i++) {
+        if (axis->places[i] == x) return;
+    }
+    if (axis->count == RT_MAX_SWEEP_VALUES) return;
+    axis->values[axis->count] = value;
+    axis->places[axis->count++] = x;
+}
+
+/* The values measured in the group of scene `first`. */
+static void add_values(const RtResults *results, uint32_t first, Axis *axis) {
+    const RtExperiment *experiment = results->experiment;
+    for (uint32_t t = first; t < experiment->workload_count; t++) {
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            const char *value = rt_swept_of(experiment, &axis->key, t, c);
+            if (value && axis->group_of[t] == first && is_measured(results, t, c)) add_value(axis, value);
+        }
+    }
+}
+
+static int by_number(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static const char *kind_of_axis(const Axis *axis) {
+    double places[RT_MAX_SWEEP_VALUES];
+    if (!axis->key.number) return "words";
+    memcpy(places, axis->places, sizeof places);
+    qsort(places, axis->count, sizeof *places, by_number);
+    return rt_swept_logarithmic(places, axis->count) ? "log" : "linear";
+}
+
+static int by_place(const void *a, const void *b) {
+    return by_number(&((const Point *)a)->x, &((const Point *)b)->x);
+}
+
+/* The points of the line of candidate `line` in the group of scene `first`; *flat: it lacks the parameter. */
+static uint32_t gather(const RtResults *results, const Axis *axis, uint32_t first, uint32_t line,
+                       Point points[RT_MAX_SWEEP_VALUES], bool *flat) {
+    const RtExperiment *experiment = results->experiment;
+    uint32_t count = 0;
+    *flat = false;
+    for (uint32_t t = first; t < experiment->workload_count; t++) {
+        if (axis->group_of[t] != first) continue;
+        for (uint32_t c = line; c < experiment->candidate_count; c++) {
+            const char *value = rt_swept_of(experiment, &axis->key, t, c);
+            if (count == RT_MAX_SWEEP_VALUES || axis->line_of[c] != line || !is_measured(results, t, c))
+                continue;
+            *flat |= !value;
+            points[count++] = (Point){value ? place_of(axis, value) : NAN, value, t, c};
+        }
+    }
+    if (!*flat) qsort(points, count, sizeof *points, by_place);
+    return count;
+}
+
+static void put_point(const RtResults *results, const char *group, const char *line, uint32_t color,
+                      int marker, const Point *point, double x, const char *value, FILE *out) {
+    const RtCost cost = rt_results_cost(results, point->workload, point->candidate, RT_ALL_RAYS);
+    const double columns[] = {1e9 * cost.seconds.median, 1e9 * cost.seconds.low, 1e9 * cost.seconds.high,
+                              cost.object_tests, cost.steps};
+    fprintf(out, "%s\t%s\t%u\t%d\t%.9g\t%s", group, line, color, marker, x, value);
+    for (size_t i = 0; i < sizeof columns / sizeof columns[0]; i++)
+        fprintf(out, isnan(columns[i]) ? "\tNaN" : "\t%.9g", columns[i]);
+    fputc('\n', out);
+}
+
+static void put_line(const RtResults *results, const Axis *axis, uint32_t first, uint32_t line,
+                     uint32_t number, FILE *out) {
+    char group[MAX_LINE_NAME], name[MAX_LINE_NAME], color[RT_COLOR_CHARS];
+    Point points[RT_MAX_SWEEP_VALUES];
+    bool flat;
+    const uint32_t count = gather(results, axis, first, line, points, &flat);
+    name_without(results->experiment, &axis->key, true, first, group);
+    name_without(results->experiment, &axis->key, false, line, name);
+    rt_candidate_color(results->experiment, line, color);
+    const uint32_t rgb = (uint32_t)strtoul(color + 1, NULL, 16);
+    const int marker = flat ? 0 : marker_of(number);
+    for (uint32_t i = 0; i < count && !flat; i++)
+        put_point(results, group, name, rgb, marker, &points[i], points[i].x, points[i].value, out);
+    uint32_t least = 0, most = 0;
+    for (uint32_t i = 0; i < axis->count; i++) {
+        if (axis->places[i] < axis->places[least]) least = i;
+        if (axis->places[i] > axis->places[most]) most = i;
+    }
+    if (flat) {
+        put_point(results, group, name, rgb, marker, points, axis->places[least], axis->values[least], out);
+        put_point(results, group, name, rgb, marker, points, axis->places[most], axis->values[most], out);
+    }
+    if (count > 0) fputc('\n', out);
+}
+
+/* All groups in which the parameter has several values. */
+static void put_groups(const RtResults *results, Axis *axis, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    bool drawn[RT_MAX_WORKLOADS] = {false};
+    find_first(experiment, &axis->key, true, experiment->workload_count, axis->group_of);
+    find_first(experiment, &axis->key, false, experiment->candidate_count, axis->line_of);
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        Axis own = *axis;
+        own.count = 0;
+        if (axis->group_of[t] == t) add_values(results, t, &own);
+        drawn[t] = own.count > 1;
+        if (drawn[t]) add_values(results, t, axis);
+    }
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        uint32_t number = 0;
+        for (uint32_t c = 0; drawn[t] && c < experiment->candidate_count; c++) {
+            if (axis->line_of[c] == c) put_line(results, axis, t, c, number++, out);
+        }
+        if (drawn[t]) fputc('\n', out);
+    }
+}
+
+/* Writes DIR/plots/sweep-KEY.tsv for each swept parameter that varies in the results, over all kinds of rays,
+ * and appends "KEY KEY ..." to `keys`, and "log", "linear" or "words" for each to `axes`. Columns of a file,
+ * which has no header: group of scenes, line, colour as a number, marker (0: the line lacks the parameter and
+ * spans the axis), place of the value on the axis, the value, ns per ray with its interval, object tests and
+ * steps per ray. A blank line is between lines, two are between groups. */
+static RtStatus write_sweep_data(const RtResults *results, const char *directory, FILE *keys, FILE *axes,
+                                 RtError *error) {
+    RtSweptKey swept[RT_MAX_SWEPT_KEYS];
+    const uint32_t count = rt_experiment_swept(results->experiment, swept);
+    for (uint32_t k = 0; k < count; k++) {
+        Axis axis = {.key = swept[k]};
+        char name[RT_MAX_NAME + 32];
+        RtOutput output;
+        snprintf(name, sizeof name, "plots/sweep-%s.tsv", swept[k].key);
+        RT_TRY(rt_output_open_in(&output, directory, name, error));
+        put_groups(results, &axis, output.file);
+        RT_TRY(rt_output_commit(&output, error));
+        if (axis.count < 2) continue;
+        fprintf(keys, "%s ", swept[k].key);
+        fprintf(axes, "%s ", kind_of_axis(&axis));
+    }
+    return RT_OK;
+}
 
 enum { MOST_SCRIPTS = RT_MAX_PLOTS + 4 };
 
@@ -57,8 +309,8 @@ static void put_candidate(const RtExperiment *experiment, uint32_t c, const char
     rt_candidate_color(experiment, c, color);
     if (strcmp(list, "accels") == 0) fprintf(out, "%s ", experiment->candidates[c].label);
     if (strcmp(list, "colors") == 0) fprintf(out, "%s ", color);
-    if (strcmp(list, "markers") == 0) fprintf(out, "%d ", rt_plot_marker(c));
-    if (strcmp(list, "dashes") == 0) fprintf(out, "%d ", rt_plot_dash(c));
+    if (strcmp(list, "markers") == 0) fprintf(out, "%d ", marker_of(c));
+    if (strcmp(list, "dashes") == 0) fprintf(out, "%d ", dash_of(c));
     if (strcmp(list, "groups") == 0) fprintf(out, "\\\"%s\\\" ", experiment->candidates[c].group);
 }
 
@@ -269,8 +521,8 @@ static RtStatus write_sweeps(Drawing *drawing, RtError *error) {
     RtStatus status = rt_memory_file_open(&drawing->sweeps, error);
     if (status == RT_OK) status = rt_memory_file_open(&drawing->axes, error);
     if (status == RT_OK && drawing->results->experiment->plot_count == 0)
-        status = rt_sweep_data_write(drawing->results, drawing->directory, drawing->sweeps.file,
-                                     drawing->axes.file, error);
+        status = write_sweep_data(drawing->results, drawing->directory, drawing->sweeps.file,
+                                  drawing->axes.file, error);
     RtMemoryFile *const files[] = {&drawing->sweeps, &drawing->axes};
     for (int i = 0; i < 2; i++) {
         if (!files[i]->file) continue;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Plots of a result directory, drawn by gnuplot from its CSV files.
+/* Colours of accelerators, and plots of a result directory, drawn by gnuplot from its CSV files.
  *
  * style.gp and the experiment's scripts run in one process, in the order of the YAML, where the result
  * directory is the current one. They get variables (gnuplot -e), which experiments/style.gp lists, and write
@@ -10,6 +10,11 @@
 
 #include "experiment/scripts.h"
 #include "results/results.h"
+
+/* "#rrggbb" of a candidate: that of the topmost accelerator of its spec; further candidates with the same one
+ * get shades of it, evenly from dark to light. The null run is grey. */
+#define RT_COLOR_CHARS 8
+void rt_candidate_color(const RtExperiment *experiment, uint32_t candidate, char color[RT_COLOR_CHARS]);
 
 /* Draws with the experiment's scripts; if it names none, with sweeps.gp if it sweeps parameters, else with
  * relative-time.gp and relative-counts.gp; and with histograms.gp if it has distributions. RT_NOT_AVAILABLE

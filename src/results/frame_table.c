@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "results/frame_table.h"
 
 #include "accel/accel.h"
 #include "core/base/file.h"
@@ -23,12 +22,12 @@ static RtKinds kinds_of(RtFramePart part) {
     return kinds;
 }
 
-static RtFrameCost cost_of(const RtResults *results, uint32_t workload, uint32_t candidate,
-                           RtFramePart part) {
-    const double unknown = (double)NAN;
-    const RtCost sum = rt_results_total(results, workload, candidate, kinds_of(part));
-    if (!sum.whole || sum.weight == 0) return (RtFrameCost){sum.weight, unknown, unknown, unknown, unknown};
-    return (RtFrameCost){sum.weight, sum.object_tests, sum.seconds.median, sum.seconds.low, sum.seconds.high};
+static RtCost cost_of(const RtResults *results, uint32_t workload, uint32_t candidate, RtFramePart part) {
+    RtCost sum = rt_results_total(results, workload, candidate, kinds_of(part));
+    if (sum.whole && sum.weight > 0) return sum;
+    sum.object_tests = (double)NAN;
+    sum.seconds = rt_estimate_exactly((double)NAN);
+    return sum;
 }
 
 static uint32_t without_of(const RtExperiment *experiment, uint32_t workload) {
@@ -52,7 +51,7 @@ static double tests_of(const RtResults *results, uint32_t workload, uint32_t can
 }
 
 static double seconds_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    return cost_of(results, workload, candidate, RT_FRAME_ALL).seconds;
+    return cost_of(results, workload, candidate, RT_FRAME_ALL).seconds.median;
 }
 
 static double build_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
@@ -109,7 +108,7 @@ static uint32_t winner_of(const RtResults *results, uint32_t workload) {
 typedef RtFrameRow Row;
 
 static double faster(const Row *r, RtFramePart part) {
-    return r->without[part].seconds / r->cost[part].seconds;
+    return r->without[part].seconds.median / r->cost[part].seconds.median;
 }
 
 static const char *below_label(const Row *r) {
@@ -124,14 +123,14 @@ static const char *below_label(const Row *r) {
       rt_candidate_label(r->results->experiment, r->candidate))                                              \
     X(group, "group", text, "", "its group in the experiment",                                               \
       r->results->experiment->candidates[r->candidate].group)                                                \
-    X(rays, "rays", integer, "", "rays of the whole frame", (uint64_t)r->cost[RT_FRAME_ALL].rays)            \
+    X(rays, "rays", integer, "", "rays of the whole frame", (uint64_t)r->cost[0].weight)                     \
     X(object_tests, "object_tests", real6, "", "object tests of the frame", r->cost[0].object_tests)         \
     X(times_fewer, "times_fewer", real6, "", "how many times fewer than without a structure",                \
       r->without[0].object_tests / r->cost[0].object_tests)                                                  \
     X(ms, "ms", real6, "ms", "time to trace the frame's rays, as the run timed it; sum of medians",          \
-      1e3 * r->cost[0].seconds)                                                                              \
-    X(ms_low, "ms_low", real6, "ms", "sum of the lower ends of the intervals", 1e3 * r->cost[0].low)         \
-    X(ms_high, "ms_high", real6, "ms", "sum of the upper ends", 1e3 * r->cost[0].high)                       \
+      1e3 * r->cost[0].seconds.median)                                                                       \
+    X(ms_low, "ms_low", real6, "ms", "sum of the lower ends of the intervals", 1e3 * r->cost[0].seconds.low) \
+    X(ms_high, "ms_high", real6, "ms", "sum of the upper ends", 1e3 * r->cost[0].seconds.high)               \
     X(times_faster, "times_faster", real6, "", "how many times faster than without a structure",             \
       faster(r, RT_FRAME_ALL))                                                                               \
     X(build_ms, "build_ms", real6, "ms", "time to build the structure",                                      \
@@ -154,7 +153,7 @@ static const char *below_label(const Row *r) {
     X(mega_tests, "Mtests", figure, "million", "object tests of the frame", 1e-6 * r->cost[0].object_tests)  \
     X(fewer, "fewer", figure, "", "times fewer object tests than without a structure",                       \
       r->without[0].object_tests / r->cost[0].object_tests)                                                  \
-    X(eye_ms, "ms", figure, "ms", "time of the frame", 1e3 * r->cost[0].seconds)                             \
+    X(eye_ms, "ms", figure, "ms", "time of the frame", 1e3 * r->cost[0].seconds.median)                      \
     X(eye_faster, "faster", figure, "", "times faster than without a structure", faster(r, RT_FRAME_ALL))    \
     X(eye_build, "build", interval, "ms", "time to build the structure, in ms, with its interval",           \
       rt_build_ms(rt_build_at(r->results, r->workload, r->candidate)))                                       \
@@ -215,8 +214,8 @@ static const char *figure(double value, char size[16]) {
 
 /* Whether the intervals of two timed frames overlap. */
 static bool is_level(const RtResults *results, uint32_t t, uint32_t one, uint32_t other) {
-    const RtFrameCost a = cost_of(results, t, one, RT_FRAME_ALL),
-                      b = cost_of(results, t, other, RT_FRAME_ALL);
+    const RtEstimate a = cost_of(results, t, one, RT_FRAME_ALL).seconds,
+                     b = cost_of(results, t, other, RT_FRAME_ALL).seconds;
     return !results->experiment->count_only && a.low <= b.high && b.low <= a.high;
 }
 
@@ -343,25 +342,12 @@ void rt_frame_legend(const RtExperiment *experiment, const char *mark, char out[
         experiment->frame.among);
 }
 
-static void print_rows(const RtResults *results, uint32_t workload, FILE *out) {
-    RtFrameRow row = {.results = results, .one = true, .workload = workload};
-    RtTable table = rt_frame_table(&row);
-    table.groups = for_terminals;
-    table.group_count = 1;
-    int widths[RT_MAX_TABLE_COLUMNS], part[RT_MAX_TABLE_COLUMNS];
-    rt_table_widths(&table, widths);
-    for (size_t next = 0; rt_table_part(&table, widths, rt_page_width(out), &next, part);) {
-        const char *group = "";
-        fputc('\n', out);
-        rt_table_line(&table, part, NULL, out);
-        for (size_t i = 0; i < table.row_count; i++) {
-            if (!table.row(table.context, i)) continue;
-            const char *own = results->experiment->candidates[row.candidate].group;
-            if (strcmp(own, group) != 0) fprintf(out, "%s\n", own);
-            group = own;
-            rt_table_line(&table, part, &row, out);
-        }
-    }
+/* The group of the rows below, where it is another one. */
+static void put_group(void *context, const void *current, FILE *out) {
+    Row *r = context;
+    const char *group = current ? r->results->experiment->candidates[r->candidate].group : "";
+    if (current && strcmp(group, r->group) != 0) fprintf(out, "%s\n", group);
+    r->group = group;
 }
 
 void rt_print_frames(const RtResults *results, FILE *out) {
@@ -377,6 +363,12 @@ void rt_print_frames(const RtResults *results, FILE *out) {
         snprintf(title, sizeof title, "%s: %s", experiment->workloads[t].label, text);
         fputc('\n', out);
         rt_print_wrapped(title, out);
-        print_rows(results, t, out);
+        RtFrameRow row = {.results = results, .one = true, .workload = t};
+        RtTable table = rt_frame_table(&row);
+        table.groups = for_terminals;
+        table.group_count = 1;
+        table.above = put_group;
+        fputc('\n', out);
+        rt_table_text(&table, out);
     }
 }

@@ -10,7 +10,43 @@
 
 #include "core/text/json.h"
 #include "experiment/selection.h"
-#include "results/events.h"
+#include "results/results.h"
+
+/* ---- what a run tells while it fills the results ---- */
+
+typedef enum RtEventKind {
+    RT_EVENT_WORKLOAD,     /* results->workloads[workload] is known */
+    RT_EVENT_BUILD,        /* the build of `candidate` is known */
+    RT_EVENT_COUNT,        /* the cell is counted */
+    RT_EVENT_DISTRIBUTION, /* the cell has its distributions */
+    RT_EVENT_TIME,         /* the cell is timed */
+    RT_EVENT_RENDER,       /* rendering with `candidate` is timed */
+    RT_EVENT_NO_BUILD,     /* `candidate` is left out: it refuses the scene, took too long, or broke */
+    RT_EVENT_NO_CELL /* the cell is left out: it would exceed a limit, or `candidate` broke on its rays */
+} RtEventKind;
+
+/* The part of the results that was just filled. */
+typedef struct RtEvent {
+    RtEventKind what;
+    uint32_t workload, candidate;
+    RtRayKind kind;
+} RtEvent;
+
+/* Whether the candidate or the cell is left out because it broke. */
+bool rt_event_is_broken(const RtResults *results, const RtEvent *event);
+
+/* Callbacks, called on the thread that runs the workload; each may be NULL. A status other than RT_OK ends
+ * the workload with that status. */
+typedef struct RtRunObserver {
+    void *context;
+    RtStatus (*event)(void *context, const RtResults *results, const RtEvent *event, RtError *error);
+    void (*notice)(void *context, const char *message);
+} RtRunObserver;
+
+/* Formats a notice like printf, and passes it to the observer. */
+__attribute__((format(printf, 2, 3))) void rt_notify(const RtRunObserver *observer, const char *format, ...);
+
+/* ---- the journal ---- */
 
 /* Opens the journal at `path` for appending: with `resume` the existing one, else a new one, which records
  * its shard (`only`). Close with rt_json_lines_close, also after a failure. */
@@ -31,5 +67,11 @@ RtStatus rt_journal_load(const char *path, RtResults *results, const RtSelection
  * are; if none has changed, it stays. At any time the old or the new journal is whole. */
 RtStatus rt_journal_drop_changed(const char *path, const RtExperiment *experiment, const RtSelection *only,
                                  const RtRunObserver *observer, RtError *error);
+
+/* The line of an event: a new reference, NULL if memory is short. */
+json_t *rt_journal_line(const RtResults *results, const RtEvent *event);
+
+/* The ray set of a kind: how many rays it has, and had before the limit, and its hash; likewise. */
+json_t *rt_ray_set_json(const RtWorkloadResult *workload, RtRayKind kind);
 
 #endif

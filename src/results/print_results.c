@@ -3,7 +3,6 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
-#include "results/frame_table.h"
 #include "results/result_tables.h"
 
 #include <inttypes.h>
@@ -35,45 +34,12 @@ static void print_title(const RtResults *results, uint32_t t, bool totals, FILE 
     fputc('\n', out);
 }
 
-/* Prints a heading before the rows of each kind of rays, and long labels on their own lines. */
-static void print_part(const RtTable *table, const RtResultRow *row, int *widths, FILE *out) {
-    const RtResultTable which = row->which;
-    const bool by_kind = which == RT_CELLS || which == RT_COUNTED_CELLS || which == RT_PERCENTILES;
-    bool any = false;
-    RtRayKind kind = RT_RAY_PRIMARY;
-    fputc('\n', out);
-    rt_table_line(table, widths, NULL, out);
-    for (size_t i = 0; i < table->row_count; i++) {
-        char label[RT_MAX_EYE_LABEL];
-        if (!table->row(table->context, i)) continue;
-        if (by_kind && (!any || row->kind != kind)) {
-            const uint64_t rays = row->scene->rays[row->kind];
-            fprintf(out, "  %s, %" PRIu64 " ray%s\n",
-                    rt_experiment_kind_name(row->results->experiment, row->kind), rays, rt_plural(rays));
-        }
-        any = true;
-        kind = row->kind;
-        rt_result_eye_label(row, label);
-        if (strlen(label) > RT_EYE_WIDTH) fprintf(out, "%s\n", label);
-        rt_table_line(table, widths, row, out);
-    }
-}
-
-void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out) {
+/* A blank line and the rows of one workload. */
+static void print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out) {
     RtResultRow row = {.results = results, .workload = workload};
     const RtTable table = rt_result_table(which, &row);
-    int widths[RT_MAX_TABLE_COLUMNS], part[RT_MAX_TABLE_COLUMNS];
-    rt_table_widths(&table, widths);
-    for (size_t next = 0; rt_table_part(&table, widths, rt_page_width(out), &next, part);)
-        print_part(&table, &row, part, out);
-}
-
-static void print_all_rows(const RtResults *results, RtResultTable which, const char *title, FILE *out) {
-    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
-        if (!results->workloads[t].known) continue;
-        fprintf(out, "\n%s, %s:\n", results->experiment->workloads[t].label, title);
-        rt_print_rows(results, which, t, out);
-    }
+    fputc('\n', out);
+    rt_table_text(&table, out);
 }
 
 /* The baseline of the ratios, and the coverage of the intervals. */
@@ -255,10 +221,10 @@ static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     const bool timed = most > 0;
     rt_print_wrapped("Object tests, extent tests and steps are per ray.", out);
     if (timed) print_ratios(results, least, most, out);
-    rt_print_rows(results, timed ? RT_CELLS : RT_COUNTED_CELLS, t, out);
+    print_rows(results, timed ? RT_CELLS : RT_COUNTED_CELLS, t, out);
     print_strides(results, t, timed, out);
     print_differing(results, t, out);
-    rt_print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
+    print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
     if (timed) print_builds(results, t, out);
     if (timed) print_break_even(results, t, out);
 }
@@ -281,6 +247,33 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
         }
     }
     print_text(rt_learnt_sentence(results), out);
+}
+
+/* ---- distributions ---- */
+
+/* Plugins report only how many leaves there are (include/raytally/accel.h). */
+static void print_unknown_leaves(const RtResults *results, uint32_t t, FILE *out) {
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
+        const RtBuildResult *build = rt_build_at(results, t, c);
+        char text[RT_MAX_LABEL + 128];
+        if (build->structure.leaves == 0 || build->leaves) continue;
+        snprintf(
+            text, sizeof text,
+            "Leaf size and depth of %s are unknown: plugins report the number of leaves, not their contents.",
+            rt_candidate_label(results->experiment, c));
+        rt_print_wrapped(text, out);
+    }
+}
+
+void rt_print_distributions(const RtResults *results, FILE *out) {
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        if (!results->workloads[t].known) continue;
+        fprintf(out, "\n%s, distributions of counts:\n", results->experiment->workloads[t].label);
+        rt_print_wrapped("Medians, 99th percentiles and maxima over the rays, or the leaves.", out);
+        print_rows(results, RT_PERCENTILES, t, out);
+        print_rows(results, RT_LEAF_PERCENTILES, t, out);
+        print_unknown_leaves(results, t, out);
+    }
 }
 
 /* ---- null runs ---- */
@@ -342,7 +335,11 @@ void rt_print_outcome(const RtResults *results, FILE *out) {
     for (uint32_t t = 0; frames && t < experiment->workload_count; t++)
         print_text(rt_frame_sentence(results, t), out);
     if (frames) print_text(rt_learnt_sentence(results), out);
-    if (experiment->render) print_all_rows(results, RT_RENDER_ROWS, "rendering the frame", out);
+    for (uint32_t t = 0; experiment->render && t < experiment->workload_count; t++) {
+        if (!results->workloads[t].known) continue;
+        fprintf(out, "\n%s, rendering the frame:\n", experiment->workloads[t].label);
+        print_rows(results, RT_RENDER_ROWS, t, out);
+    }
     rt_print_left_out(results, out);
 }
 

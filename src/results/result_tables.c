@@ -2,8 +2,10 @@
 #include "results/result_tables.h"
 
 #include "accel/columns.h"
+#include "core/base/words.h"
 
 #include <assert.h>
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -23,11 +25,20 @@ static RtField label_of(const Row *r) {
     return field;
 }
 
+/* In tables to read, with a star if it is measured on a part of the rays. */
+static RtField eye_label_of(const Row *r) {
+    return rt_field_print("%s%s", r->shown, ray_stride_of(r) > 1 ? " *" : "");
+}
+
 /* A label too long to fit beside the figures is printed on a line before them. */
+static bool is_long(const RtField *label) {
+    enum { EYE_WIDTH = 24 };
+    return strlen(label->buffer) > EYE_WIDTH;
+}
+
 static RtField short_label_of(const Row *r) {
-    char label[RT_MAX_EYE_LABEL];
-    rt_result_eye_label(r, label);
-    return rt_field_print("%s", strlen(label) > RT_EYE_WIDTH ? " " : label);
+    const RtField label = eye_label_of(r);
+    return is_long(&label) ? rt_field_text(" ") : label;
 }
 
 static RtField estimate(const RtEstimate *e, double unit) {
@@ -69,10 +80,6 @@ static RtField break_even_of(const Row *r) {
                           text);
 }
 
-void rt_result_eye_label(const RtResultRow *r, char out[RT_MAX_EYE_LABEL]) {
-    snprintf(out, RT_MAX_EYE_LABEL, "%s%s", r->shown, ray_stride_of(r) > 1 ? " *" : "");
-}
-
 /* A counter; missing if its value per ray is unknown. */
 static RtField known(uint64_t counter, double a_ray) {
     return isnan(a_ray) ? rt_field_missing() : rt_field_integer(counter);
@@ -110,6 +117,16 @@ static uint32_t threads_of(const Row *r) {
     return (uint32_t)(r->which == RT_RENDERED ? r->build->render.threads : r->cell->threads);
 }
 
+/* NULL of leaves. */
+static const char *kind_of(const Row *r) {
+    return r->quantity < RT_RAY_QUANTITY_COUNT ? rt_experiment_kind_name(r->results->experiment, r->kind)
+                                               : NULL;
+}
+
+static double count_of(const Row *r) {
+    return (double)r->distribution->count;
+}
+
 static double ns_of_round(const Row *r, RtRoundTime which) {
     return 1e9 * rt_cell_round_times(r->cell, which)[r->round];
 }
@@ -143,7 +160,7 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(height, "height", integer, "pixels", "height of the frame", r->scene->height)                          \
     X(corners, "corners", flag, "", "samples at pixel corners, not centres", r->setup->corners)              \
     X(depth, "depth", integer, "", "levels of the ray tree; the primary ray is the first", r->setup->depth)  \
-    X(kind, "kind", text, "", "kind of the rays", rt_experiment_kind_name(r->results->experiment, r->kind))  \
+    X(kind, "kind", text, "", "kind of the rays", kind_of(r))                                                \
     X(set_rays, "set_rays", integer, "", "rays in the set, after the limit", r->scene->rays[r->kind])        \
     X(set_hash, "set_hash", hash, "", "fingerprint of the set", r->scene->ray_fingerprints[r->kind])         \
     X(accel, "accel", text, "", "the accelerator's label; (again): a null run", label_of(r))                 \
@@ -243,7 +260,24 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(round_wall_ns, "wall_ns", real6, "ns", "wall time per ray", ns_of_round(r, RT_ROUND_WALL))             \
     X(round_baseline_ns, "baseline_ns", real6, "ns",                                                         \
       "time per ray of the baseline in this round, on the same rays; divided by round_ns it is the ratio",   \
-      ns_of_round(r, RT_ROUND_BASELINE))
+      ns_of_round(r, RT_ROUND_BASELINE))                                                                     \
+    X(quantity, "quantity", text, "",                                                                        \
+      "object_tests, extent_tests, steps: per ray, each traced alone; leaf_size, leaf_depth, without a "     \
+      "kind: objects in "                                                                                    \
+      "the list of a leaf or voxel, and its depth",                                                          \
+      rt_quantity_name(r->quantity))                                                                         \
+    X(count, "count", integer, "", "rays, or leaves", r->distribution->count)                                \
+    X(mean, "mean", real6, "", "mean of the quantity", (double)r->distribution->sum / count_of(r))           \
+    X(median, "median", integer, "", "the smallest value that half of them do not exceed",                   \
+      r->distribution->median)                                                                               \
+    X(p90, "p90", integer, "", "the smallest that 90 % do not exceed", r->distribution->p90)                 \
+    X(p99, "p99", integer, "", "the smallest that 99 % do not exceed", r->distribution->p99)                 \
+    X(p999, "p999", integer, "", "the smallest that 99.9 % do not exceed", r->distribution->p999)            \
+    X(max, "max", integer, "", "the largest value", r->distribution->most)                                   \
+    X(low, "low", integer, "", "smallest value of the bin", rt_histogram_low(r->bin))                        \
+    X(end, "end", integer, "", "smallest value above the bin", rt_histogram_low(r->bin + 1))                 \
+    X(values, "values", integer, "", "rays, or leaves, within it", r->distribution->bins[r->bin])            \
+    X(part, "part", real6, "", "as a fraction of all", (double)r->distribution->bins[r->bin] / count_of(r))
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
@@ -261,7 +295,9 @@ enum {
     ALL_KINDS = 2,  /* a row is of all kinds of rays together */
     SWEPT = 4,      /* a column for each swept parameter */
     BEST = 8,       /* marks of the best */
-    REFUSED = 16    /* a column that says why rows are refused, if any are */
+    REFUSED = 16,   /* a column that says why rows are refused, if any are */
+    QUANTITIES = 32 /* by workload, then accelerator, then the quantities over each kind of rays, then those
+                       over leaves */
 };
 
 /* X(TABLE, what it is and has, which rows it has, its columns...) */
@@ -281,6 +317,9 @@ enum {
     X(RENDERED, ALL_SCENES | SWEPT, r->build->render.known && r->kind == e->kinds[0],                        \
       FROM_TO(scene, objects), FROM_TO(width, depth), FROM_TO(accel, spec), ONE(threads),                    \
       FROM_TO(render_rounds, query_share_high), FROM_TO(host, cpu))                                          \
+    X(DISTRIBUTIONS, QUANTITIES, true, ONE(scene), ONE(kind), ONE(accel), ONE(quantity), ONE(spec),          \
+      FROM_TO(count, max))                                                                                   \
+    X(HISTOGRAMS, QUANTITIES, true, ONE(scene), ONE(kind), ONE(accel), ONE(quantity), FROM_TO(low, part))    \
     X(BENCH, SWEPT, (counted && !null) || refused, FROM_TO(scene, scene_spec), FROM_TO(accel, ray_stride),   \
       ONE(kind), ONE(refused), MEASURED(rays, bytes),                                                        \
       {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},                               \
@@ -321,21 +360,49 @@ static const struct {
 
 /* ---- rows ---- */
 
-static void find(Row *r, size_t i) {
+/* Rows of RT_DISTRIBUTIONS for one candidate. */
+static size_t quantities_of(const RtExperiment *e) {
+    return (size_t)e->kind_count * RT_RAY_QUANTITY_COUNT + RT_LEAF_QUANTITY_COUNT;
+}
+
+/* Of quantities: false if the row has no values. */
+static bool find_quantity(Row *r, size_t i) {
     const RtExperiment *e = r->results->experiment;
-    const size_t kinds = e->kind_count, candidates = e->candidate_count + 1;
-    const bool by_workload = tables[r->which].has & ALL_SCENES;
+    const size_t over_rays = quantities_of(e) - RT_LEAF_QUANTITY_COUNT, at = i % quantities_of(e);
+    const bool of_rays = at < over_rays, bins = r->which == RT_HISTOGRAMS;
+    r->quantity = of_rays ? at % RT_RAY_QUANTITY_COUNT : RT_RAY_QUANTITY_COUNT + at - over_rays;
+    const RtDistribution *list = of_rays ? r->cell->distributions : r->build->leaves;
+    r->distribution = list ? &list[of_rays ? r->quantity : at - over_rays] : NULL;
+    if (!r->build->counts || !r->distribution || r->distribution->count == 0) return false;
+    return !bins || r->distribution->bins[r->bin] > 0;
+}
+
+static bool find(Row *r, size_t i) {
+    const RtExperiment *e = r->results->experiment;
+    const int has = tables[r->which].has;
+    const size_t kinds = e->kind_count, candidates = e->candidate_count + !(has & QUANTITIES);
     if (r->which == RT_ROUNDS) {
         r->round = (uint32_t)(i % r->most_rounds);
         i /= r->most_rounds;
     }
-    r->kind = e->kinds[by_workload ? i % kinds : i / candidates];
-    r->candidate = (uint32_t)((by_workload ? i / kinds : i) % candidates);
-    if (by_workload) r->workload = (uint32_t)(i / kinds / candidates);
+    if (r->which == RT_HISTOGRAMS) {
+        r->bin = (uint32_t)(i % RT_HISTOGRAM_BINS);
+        i /= RT_HISTOGRAM_BINS;
+    }
+    size_t kind = i / candidates, candidate = i;
+    if (has & (ALL_SCENES | QUANTITIES)) {
+        const size_t rows = has & QUANTITIES ? quantities_of(e) : kinds;
+        kind = has & QUANTITIES ? i % rows / RT_RAY_QUANTITY_COUNT : i % rows;
+        candidate = i / rows;
+        r->workload = (uint32_t)(candidate / candidates);
+    }
+    r->kind = e->kinds[kind < kinds ? kind : 0];
+    r->candidate = (uint32_t)(candidate % candidates);
     r->setup = &e->workloads[r->workload];
     r->scene = &r->results->workloads[r->workload];
     r->build = rt_build_at(r->results, r->workload, r->candidate);
     r->cell = rt_cell_at(r->results, r->workload, r->candidate, r->kind);
+    return !(has & QUANTITIES) || find_quantity(r, i);
 }
 
 /* Whether the candidate is one of the baseline's, but not the fastest of them on these rays. */
@@ -361,7 +428,7 @@ static RtRayKind kinds_of(const Row *r) {
 
 static const void *row_at(void *context, size_t i) {
     Row *r = context;
-    find(r, i);
+    if (!find(r, i)) return NULL;
     const RtExperiment *e = r->results->experiment;
     const bool null = r->candidate == e->candidate_count, first = i < e->candidate_count;
     const bool counted = r->cell->counted, timed = r->cell->timed;
@@ -381,7 +448,14 @@ static RtStanding standing_of(const void *row) {
     return rt_standing(r->results, r->workload, r->candidate, kinds_of(r));
 }
 
-/* ---- swept parameters ---- */
+/* ---- columns that depend on the results ---- */
+
+static void add_group(RtTable *table, Row *row, RtColumnGroup group) {
+    assert(table->group_count < RT_MAX_RESULT_GROUPS);
+    memmove(row->groups, table->groups, table->group_count * sizeof *row->groups);
+    row->groups[table->group_count++] = group;
+    table->groups = row->groups;
+}
 
 static RtField get_swept(const void *row, const RtTableColumn *column) {
     const Row *r = row;
@@ -407,26 +481,18 @@ static void add_swept(RtTable *table, Row *row) {
                                                 .form = key->number ? RT_FORM_real9 : RT_FORM_text,
                                                 .key = (int)i};
     }
-    if (!row->swept_count) return;
-    assert(table->group_count < RT_MAX_RESULT_GROUPS);
-    memmove(row->groups, table->groups, table->group_count * sizeof *row->groups);
-    row->groups[table->group_count++] = (RtColumnGroup){NULL, row->swept_columns, row->swept_count, NULL};
-    table->groups = row->groups;
+    if (row->swept_count)
+        add_group(table, row, (RtColumnGroup){NULL, row->swept_columns, row->swept_count, NULL});
 }
 
 /* Appends the column of reasons if there are any: files without are those of version 1.0. */
 static void add_refused(RtTable *table, Row *row) {
-    static const RtColumnGroup refused = ONE(refused);
     const RtExperiment *e = row->results->experiment;
     bool any = false;
     for (uint32_t t = 0; t < e->workload_count; t++) {
         for (uint32_t c = 0; c < e->candidate_count; c++) any |= rt_build_at(row->results, t, c)->refused;
     }
-    if (!any || row->results->old_rows) return;
-    assert(table->group_count < RT_MAX_RESULT_GROUPS);
-    memmove(row->groups, table->groups, table->group_count * sizeof *row->groups);
-    row->groups[table->group_count++] = refused;
-    table->groups = row->groups;
+    if (any && !row->results->old_rows) add_group(table, row, (RtColumnGroup)ONE(refused));
 }
 
 /* Of any cell. */
@@ -443,15 +509,34 @@ bool rt_result_table_sweeps(RtResultTable which) {
     return tables[which].has & SWEPT;
 }
 
+/* A heading before the rows of each kind of rays, and long labels on their own lines. */
+static void put_above(void *context, const void *current, FILE *out) {
+    Row *r = context;
+    const bool by_kind = r->which == RT_CELLS || r->which == RT_COUNTED_CELLS || r->which == RT_PERCENTILES;
+    const RtField label = eye_label_of(r);
+    if (!current) r->headed = 0;
+    if (!current) return;
+    if (by_kind && r->headed != 1 + (uint32_t)r->kind) {
+        const uint64_t rays = r->scene->rays[r->kind];
+        fprintf(out, "  %s, %" PRIu64 " ray%s\n", rt_experiment_kind_name(r->results->experiment, r->kind),
+                rays, rt_plural(rays));
+        r->headed = 1 + (uint32_t)r->kind;
+    }
+    if (is_long(&label)) fprintf(out, "%s\n", label.buffer);
+}
+
 RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     const RtExperiment *e = row->results->experiment;
     const int has = tables[which].has;
-    const size_t workloads = has & ALL_SCENES ? e->workload_count : 1;
     RtTable table = tables[which].table;
-    table.row_count = workloads * (e->candidate_count + 1) * e->kind_count;
+    table.row_count = has & QUANTITIES ? e->candidate_count * quantities_of(e)
+                                       : ((size_t)e->candidate_count + 1) * e->kind_count;
+    if (has & (ALL_SCENES | QUANTITIES)) table.row_count *= e->workload_count;
     if (which == RT_ROUNDS) row->most_rounds = most_rounds(row->results);
     if (which == RT_ROUNDS) table.row_count *= row->most_rounds;
+    if (which == RT_HISTOGRAMS) table.row_count *= RT_HISTOGRAM_BINS;
     table.row = row_at;
+    table.above = table.groups->columns == &columns[AT_eye_label] ? put_above : NULL;
     table.context = row;
     table.standing = has & BEST ? standing_of : NULL;
     row->which = which;

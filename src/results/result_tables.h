@@ -5,7 +5,7 @@
 #define RT_RESULTS_RESULT_TABLES_H
 
 #include "core/text/table.h"
-#include "results/paired.h"
+#include "results/results.h"
 
 typedef enum RtResultTable {
     /* counts.csv: a row per cell of each accelerator whose counts are the same on every machine: every
@@ -18,8 +18,13 @@ typedef enum RtResultTable {
     RT_TIMES,
     /* rounds.csv: a row per round of a timed cell, null runs included. */
     RT_ROUNDS,
-    RT_RENDERED,  /* render.csv: a row per scene and accelerator: time to render the frame, and the part of
-                     it spent in queries */
+    RT_RENDERED, /* render.csv: a row per scene and accelerator: time to render the frame, and the part of
+                    it spent in queries */
+    /* distributions.csv: a row per cell and quantity over rays, and per structure and quantity over leaves:
+       percentiles; histograms.csv: a row for each bin that is not empty. As exact as counts.csv, for the same
+       accelerators. */
+    RT_DISTRIBUTIONS,
+    RT_HISTOGRAMS,
     RT_BENCH,     /* "rows" of bench --json: a row per counted cell */
     RT_NULL_RUNS, /* "null_runs" there */
     RT_CELLS, /* to read: one workload by accelerator and ray kind; of several baselines only the fastest */
@@ -46,6 +51,10 @@ typedef struct RtResultRow {
     char shown[RT_MAX_SHOWN]; /* its label on a screen */
     RtRayKind kind;
     uint32_t round, most_rounds; /* of RT_ROUNDS; most_rounds: of any cell */
+    size_t quantity;             /* rt_quantity_name, of RT_DISTRIBUTIONS and RT_HISTOGRAMS */
+    uint32_t bin;                /* of RT_HISTOGRAMS */
+    const RtDistribution *distribution;
+    uint32_t headed; /* printed rows: 1 + the kind of rays of the last heading */
     const RtWorkload *setup;
     const RtWorkloadResult *scene;
     const RtBuildResult *build;
@@ -65,12 +74,6 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row);
 /* Whether it has a column for each parameter that the experiment sweeps. */
 bool rt_result_table_sweeps(RtResultTable which);
 
-/* The label of a row in tables to read, with a star if it is measured on a part of the rays. A label of more
- * than RT_EYE_WIDTH characters is printed on its own line. */
-#define RT_EYE_WIDTH     24
-#define RT_MAX_EYE_LABEL (RT_MAX_SHOWN + 8)
-void rt_result_eye_label(const RtResultRow *row, char out[RT_MAX_EYE_LABEL]);
-
 /* The time to build in ms, with its interval: without one if it was built once. */
 RtField rt_build_ms(const RtBuildResult *build);
 
@@ -78,9 +81,8 @@ RtField rt_build_ms(const RtBuildResult *build);
  * if nothing was timed), or RT_TOTALS; for each known workload. */
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out);
 
-/* Prints a blank line, the names of the columns, and the rows of one workload; in several parts if the page
- * is narrower (rt_table_part). */
-void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out);
+/* Prints the percentiles of each known workload: a row per cell, and then a row per structure. */
+void rt_print_distributions(const RtResults *results, FILE *out);
 
 /* Prints the frames' costs and what follows from them, or the totals if the experiment has no frames;
  * what was left out. */
@@ -102,5 +104,61 @@ char *rt_learnt_sentence(const RtResults *results);
 /* The least coverage of the intervals: "95 %", or less if rounds are too few. */
 #define RT_MAX_INTERVAL_TITLE 16
 void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_TITLE]);
+
+/* ---- frames ---- */
+
+/* The cost of a whole frame by accelerator, compared with the frame without a structure: the answer of an
+ * experiment that has `frame` (RtFrameSetup).
+ *
+ * A frame's rays are its primary, shadow, reflection and transmission rays: measurements on a part of them
+ * are scaled up (rt_results_total). If one kind was not measured, the frame's cost is unknown. The gain of an
+ * overlay is relative to the accelerator below it, if that is measured too; the gain of any other accelerator
+ * is relative to no structure. */
+
+#define RT_FRAME_PLOT "plots/frame.svg" /* drawn by a script of the experiment */
+
+typedef enum RtFramePart {
+    RT_FRAME_ALL,
+    RT_FRAME_PRIMARY,
+    RT_FRAME_SHADOW,
+    RT_FRAME_SECONDARY, /* reflection and transmission */
+    RT_FRAME_PARTS
+} RtFramePart;
+
+/* The row at hand. */
+typedef struct RtFrameRow {
+    const RtResults *results;
+    bool one;          /* a table to read, of one workload; else frame.csv, of all */
+    uint32_t workload; /* of the row; given if `one` */
+    uint32_t candidate;
+    char shown[2 + RT_MAX_SHOWN]; /* its mark and its label, for a screen */
+    const char *group;            /* printed rows: that of the last heading */
+    /* Totals over a part of the frame; its tests and times are NAN if a kind was not measured, or if the part
+       has no rays. */
+    RtCost cost[RT_FRAME_PARTS], without[RT_FRAME_PARTS];
+    double gain, tests_gain; /* in time, and in object tests */
+    uint32_t winner; /* the fastest of the group, without overlays; of the fewest object tests if nothing was
+                        timed; candidate_count: none */
+} RtFrameRow;
+
+/* `row` belongs to the table and must outlive it. The caller fills in its results, `one`, and then its
+ * workload. The winner is marked as the best. */
+RtTable rt_frame_table(RtFrameRow *row);
+
+/* Which accelerator of the group is the fastest on a workload, by how much, and how the others and the
+ * overlays compare; those whose intervals overlap are level: sentences, for rt_free(). "" if
+ * unknown, NULL if memory is short. */
+char *rt_frame_sentence(const RtResults *results, uint32_t workload);
+
+/* The size of a workload's frame, its rays by kind, and how many were measured: "a frame of 256x256: 65536
+ * primary, ... rays; of 326921 rays, 152585 measured". */
+#define RT_MAX_FRAME_TEXT 1024
+void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_TEXT]);
+
+/* Explains the columns of the tables to read, `mark` beside the fastest, and "level". */
+void rt_frame_legend(const RtExperiment *experiment, const char *mark, char out[RT_MAX_FRAME_TEXT]);
+
+/* Prints the tables of all known workloads. */
+void rt_print_frames(const RtResults *results, FILE *out);
 
 #endif

@@ -2,6 +2,7 @@
 #include "results/results.h"
 
 #include "core/base/memory.h"
+#include "experiment/claim.h"
 
 #include <math.h>
 #include <string.h>
@@ -197,7 +198,8 @@ void rt_print_left_out(const RtResults *results, FILE *out) {
     }
 }
 
-bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind kind) {
+/* Whether any candidate was measured on the workload's rays of that kind. */
+static bool has_kind(const RtResults *results, uint32_t workload, RtRayKind kind) {
     for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
         const RtCell *cell = rt_cell_at(results, workload, c, kind);
         if (cell->counted || cell->timed) return true;
@@ -257,7 +259,7 @@ RtCost rt_results_total(const RtResults *results, uint32_t workload, uint32_t ca
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const double weight = rt_results_weight(results, workload, (RtRayKind)k);
         if (weight == 0 || !(kinds >> k & 1)) continue;
-        const bool measured = rt_results_has_kind(results, workload, (RtRayKind)k);
+        const bool measured = has_kind(results, workload, (RtRayKind)k);
         sum.whole &= measured;
         if (!measured) continue;
         const RtCost cost = cost_of_cell(results, workload, candidate, (RtRayKind)k);
@@ -356,4 +358,188 @@ RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, u
     set_rays(&even, &more, &saved);
     even.builds = own->builds < baseline->builds ? own->builds : baseline->builds;
     return even;
+}
+
+/* ---- paired times ---- */
+
+/* Times of rounds, summed over kinds of rays; the second of a pair is unused for a single accelerator. */
+typedef struct Sums {
+    double over[RT_MAX_ROUNDS], under[RT_MAX_ROUNDS];
+    uint32_t rounds; /* the fewest of any kind; 0 before the first */
+} Sums;
+
+static const RtCell *timed_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
+    c = rt_results_candidate(results, t, c, kind);
+    const RtCell *cell = c == RT_FASTEST_BASELINE ? NULL : rt_cell_at(results, t, c, kind);
+    return cell && cell->timed && cell->round_times ? cell : NULL;
+}
+
+/* Whether they were timed in the same rounds on the same rays: they have the same times of the baseline. */
+static bool are_together(const RtCell *one, const RtCell *other) {
+    return one->rounds == other->rounds && one->baseline == other->baseline &&
+           memcmp(rt_cell_round_times(one, RT_ROUND_BASELINE), rt_cell_round_times(other, RT_ROUND_BASELINE),
+                  one->rounds * sizeof(double)) == 0;
+}
+
+static bool add_kind(const RtCell *over, const RtCell *under, double weight, Sums *sums) {
+    if (!over || !under || over->baseline != under->baseline) return false;
+    const bool together = are_together(over, under);
+    const double *a = rt_cell_round_times(over, RT_ROUND_SECONDS),
+                 *b = rt_cell_round_times(under, RT_ROUND_SECONDS),
+                 *base_a = rt_cell_round_times(over, RT_ROUND_BASELINE),
+                 *base_b = rt_cell_round_times(under, RT_ROUND_BASELINE);
+    const uint32_t rounds = over->rounds < under->rounds ? over->rounds : under->rounds;
+    if (sums->rounds == 0 || rounds < sums->rounds) sums->rounds = rounds;
+    for (uint32_t r = 0; r < sums->rounds; r++) {
+        sums->over[r] += weight * a[r];
+        sums->under[r] += weight * (together ? b[r] : b[r] / base_b[r] * base_a[r]);
+    }
+    return true;
+}
+
+/* Sums over the kinds of rays; false if one of them cannot be paired. */
+static bool sum_rounds(const RtResults *results, uint32_t t, uint32_t over, uint32_t under, RtRayKind kind,
+                       Sums *sums) {
+    const RtExperiment *e = results->experiment;
+    double weights = 0;
+    *sums = (Sums){.rounds = 0};
+    if (kind != RT_ALL_RAYS)
+        return add_kind(timed_cell(results, t, over, kind), timed_cell(results, t, under, kind), 1, sums);
+    for (uint32_t k = 0; k < e->kind_count; k++) weights += rt_results_weight(results, t, e->kinds[k]);
+    for (uint32_t k = 0; k < e->kind_count; k++) {
+        const RtRayKind one = e->kinds[k];
+        const double weight = rt_results_weight(results, t, one) / weights;
+        if (weight > 0 &&
+            !add_kind(timed_cell(results, t, over, one), timed_cell(results, t, under, one), weight, sums))
+            return false;
+    }
+    return sums->rounds > 0;
+}
+
+RtEstimate rt_results_time(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind,
+                           double coverage) {
+    Sums sums;
+    if (sum_rounds(results, workload, candidate, candidate, kind, &sums))
+        return rt_estimate_covering(sums.over, sums.rounds, coverage);
+    const RtCost cost = rt_results_cost(results, workload, candidate, kind);
+    return cost.whole ? cost.seconds : rt_estimate_exactly((double)NAN);
+}
+
+/* What the journal has of a cell and its baseline without the times of rounds. */
+static bool kept_ratio(const RtResults *results, uint32_t t, uint32_t over, uint32_t under, RtRayKind kind,
+                       RtEstimate *ratio) {
+    if (kind == RT_ALL_RAYS) return false;
+    over = rt_results_candidate(results, t, over, kind);
+    under = rt_results_candidate(results, t, under, kind);
+    if (over == RT_FASTEST_BASELINE || under == RT_FASTEST_BASELINE) return false;
+    const RtCell *own = rt_cell_at(results, t, over, kind), *its = rt_cell_at(results, t, under, kind);
+    if (!own->timed || !its->timed) return false;
+    *ratio = its->ratio;
+    if (own->baseline == under)
+        *ratio = (RtEstimate){.median = 1 / own->ratio.median,
+                              .low = 1 / own->ratio.high,
+                              .high = 1 / own->ratio.low,
+                              .least = (double)NAN};
+    return (own->baseline == under || its->baseline == over) && ratio->median > 0 && isfinite(ratio->median);
+}
+
+RtEstimate rt_results_time_ratio(const RtResults *results, uint32_t workload, uint32_t over, uint32_t under,
+                                 RtRayKind kind, double coverage) {
+    Sums sums;
+    RtEstimate kept;
+    if (sum_rounds(results, workload, over, under, kind, &sums)) {
+        for (uint32_t r = 0; r < sums.rounds; r++) sums.over[r] /= sums.under[r];
+        return rt_estimate_covering(sums.over, sums.rounds, coverage);
+    }
+    if (kept_ratio(results, workload, over, under, kind, &kept)) return kept;
+    const RtEstimate a = rt_results_time(results, workload, over, kind, coverage),
+                     b = rt_results_time(results, workload, under, kind, coverage);
+    if (over == under) return rt_estimate_exactly(a.median / a.median);
+    return (RtEstimate){a.median / b.median, a.low / b.high, a.high / b.low, (double)NAN};
+}
+
+/* ---- the best ---- */
+
+/* What candidates are compared by; NAN if it is unknown. */
+static double compared_cost(bool time, const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
+    const RtExperiment *e = results->experiment;
+    if (c >= e->candidate_count || strcmp(e->candidates[c].spec, rt_accel_yardstick()) == 0)
+        return (double)NAN;
+    const RtCost cost = rt_results_cost(results, t, c, kind);
+    return time ? cost.seconds.median : cost.object_tests;
+}
+
+RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
+    uint32_t least;
+    const bool timed = rt_results_rounds(results, workload, &least) > 0;
+    return rt_standing_by(timed, results, workload, candidate, kind);
+}
+
+RtStanding rt_standing_by(bool time, const RtResults *results, uint32_t workload, uint32_t candidate,
+                          RtRayKind kind) {
+    const double coverage = rt_coverage_of_each(1);
+    uint32_t best = candidate;
+    double least = compared_cost(time, results, workload, candidate, kind);
+    if (isnan(least)) return RT_STANDING_BEHIND;
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
+        const double cost = compared_cost(time, results, workload, c, kind);
+        if (c == best || isnan(cost)) continue;
+        const bool less = time ? rt_results_time_ratio(results, workload, c, best, kind, coverage).median < 1
+                               : cost < least;
+        best = less ? c : best;
+        least = less ? cost : least;
+    }
+    if (best == candidate) return RT_STANDING_BEST;
+    if (!time) return RT_STANDING_BEHIND;
+    return rt_results_time_ratio(results, workload, candidate, best, kind, coverage).low <= 1
+               ? RT_STANDING_LEVEL
+               : RT_STANDING_BEHIND;
+}
+
+/* ---- claims that changed ---- */
+
+json_t *rt_claims_json(const RtExperiment *experiment) {
+    json_t *list = json_array();
+    for (uint32_t i = 0; i < experiment->claim_count; i++)
+        json_array_append_new(list, json_string(experiment->claims[i]));
+    return list;
+}
+
+/* A claim that cannot be parsed any more, because what it names is gone, is none. */
+static bool is_readout(const RtExperiment *experiment, const char *text) {
+    RtClaim claim;
+    return rt_claim_parse(experiment, text, &claim, NULL) == RT_OK && claim.readout;
+}
+
+bool rt_claim_is_later(const RtResults *results, uint32_t i) {
+    const char *claim = results->experiment->claims[i];
+    const json_t *first;
+    size_t k;
+    if (!results->first_claims || is_readout(results->experiment, claim)) return false;
+    json_array_foreach(results->first_claims, k, first) {
+        const char *text = json_string_value(first);
+        if (text && strcmp(text, claim) == 0) return false;
+    }
+    return true;
+}
+
+uint32_t rt_claims_dropped(const RtResults *results, void (*visit)(void *context, const char *claim),
+                           void *context) {
+    const RtExperiment *experiment = results->experiment;
+    uint32_t dropped = 0;
+    for (size_t k = 0; k < json_array_size(results->first_claims); k++) {
+        const char *text = json_string_value(json_array_get(results->first_claims, k));
+        uint32_t i = 0;
+        while (text && i < experiment->claim_count && strcmp(experiment->claims[i], text) != 0) i++;
+        if (!text || i < experiment->claim_count || is_readout(experiment, text)) continue;
+        if (visit) visit(context, text);
+        dropped++;
+    }
+    return dropped;
+}
+
+bool rt_claims_are_changed(const RtResults *results) {
+    bool any = rt_claims_dropped(results, NULL, NULL) > 0;
+    for (uint32_t i = 0; i < results->experiment->claim_count; i++) any |= rt_claim_is_later(results, i);
+    return any;
 }

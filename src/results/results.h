@@ -166,9 +166,6 @@ void rt_results_leave_out(RtResults *results, uint32_t workload, uint32_t candid
 /* Prints a line for each structure and each cell that was left out, with the reason. */
 void rt_print_left_out(const RtResults *results, FILE *out);
 
-/* Whether any candidate was measured on the workload's rays of that kind. */
-bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind kind);
-
 /* What a ray kind weighs in every sum over kinds: the rays of its whole set, so that a lower limit changes no
  * total; of the measured set if the size of the whole is unknown. */
 double rt_results_weight(const RtResults *results, uint32_t workload, RtRayKind kind);
@@ -219,5 +216,53 @@ RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, u
 /* The most rounds of any timed cell of a workload, null runs included, and in *least the fewest; 0 if nothing
  * was timed. */
 uint32_t rt_results_rounds(const RtResults *results, uint32_t workload, uint32_t *least);
+
+/* ---- paired times ---- */
+
+/* Times of accelerators relative to each other are divided within each round, so that what slows a round
+ * slows both. Only cells that were timed in the same rounds can be paired directly; of others each is first
+ * divided by the baseline of its own rounds and rays. */
+
+/* The time of a ray: of one kind, or with RT_ALL_RAYS the weighted mean of all kinds, summed within each
+ * round. Its interval covers at least `coverage`, 0.95 or more (rt_estimate_covering); that of a journal of
+ * an older version, which has no times of rounds, is as it was kept. NAN if a kind was not measured. */
+RtEstimate rt_results_time(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind,
+                           double coverage);
+
+/* The time of `over` relative to that of `under`, likewise. Where nothing can be paired, because there are no
+ * times of rounds or no common baseline, the quotient of both estimates, with those of the intervals' ends.
+ * Both may be RT_FASTEST_BASELINE. */
+RtEstimate rt_results_time_ratio(const RtResults *results, uint32_t workload, uint32_t over, uint32_t under,
+                                 RtRayKind kind, double coverage);
+
+/* Compares a candidate with all others of the workload, for one kind of rays or RT_ALL_RAYS: by time if
+ * anything was timed, else by object tests per ray. No other is faster than the best by the medians of paired
+ * ratios; one whose ratio to the best has 1 in its interval is level with it. Null runs and
+ * the yardstick (rt_accel_yardstick) are not compared. */
+RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
+
+/* The same by time, or by object tests, whatever was timed. */
+RtStanding rt_standing_by(bool time, const RtResults *results, uint32_t workload, uint32_t candidate,
+                          RtRayKind kind);
+
+/* ---- claims that changed ---- */
+
+/* Claims may be edited after a run began, but not in secret. Readouts claim nothing, and may come and go. */
+#define RT_CLAIM_LATER "stated after the run began"
+
+/* The texts of all claims, readouts too: a new reference, NULL if memory is short. */
+json_t *rt_claims_json(const RtExperiment *experiment);
+
+/* Whether claim number `i` was not there when the run began. False if that is unknown, as in runs of version
+ * 1.0. */
+bool rt_claim_is_later(const RtResults *results, uint32_t i);
+
+/* Calls visit(context, claim) with each claim that was there when the run began and is not any more; returns
+ * their number. */
+uint32_t rt_claims_dropped(const RtResults *results, void (*visit)(void *context, const char *claim),
+                           void *context);
+
+/* Whether any claim is later or dropped. */
+bool rt_claims_are_changed(const RtResults *results);
 
 #endif

@@ -12,8 +12,6 @@
 #include "measure/machine.h"
 #include "render/frame.h"
 #include "results/journal.h"
-#include "results/journal_lines.h"
-#include "results/manifest.h"
 #include "results/result_directory.h"
 
 #include <inttypes.h>

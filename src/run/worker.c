@@ -8,7 +8,7 @@
 #include "core/base/memory.h"
 #include "core/text/json.h"
 #include "measure/machine.h"
-#include "measure/rounds.h"
+#include "measure/measure.h"
 #include "run/workload_state.h"
 
 #include <ctype.h>

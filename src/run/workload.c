@@ -4,7 +4,7 @@
 #include "core/base/parallel.h"
 #include "core/base/words.h"
 #include "measure/ray_file.h"
-#include "measure/rounds.h"
+#include "measure/measure.h"
 #include "render/frame.h"
 #include "run/workload_state.h"
 #include "scenes/open.h"

@@ -11,7 +11,7 @@
  */
 #include "accel/accel.h"
 #include "core/base/random.h"
-#include "measure/rounds.h"
+#include "measure/measure.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* docs/columns.md is generated from the columns of all tables; the test says where the current page is. The
  * committed files have these columns. */
+#include "csv_testing.h"
 #include "testing.h"
 
 #include "compare/compare.h"
 #include "core/base/file.h"
 #include "core/base/memory.h"
-#include "core/text/csv.h"
 #include "measure/extents_table.h"
-#include "results/distribution_tables.h"
-#include "results/frame_table.h"
 #include "results/result_tables.h"
 #include "run/callgrind.h"
 #include "verify/verify_table.h"
@@ -28,11 +26,6 @@ static RtTable of_results(RtResultTable which) {
     return rt_result_table(which, &row);
 }
 
-static RtTable of_distributions(RtDistributionTable which) {
-    static RtDistributionRow rows[2] = {{.results = &results}, {.results = &results}};
-    return rt_distribution_table(which, &rows[which]);
-}
-
 static RtTable of_frames(void) {
     static RtFrameRow row = {.results = &results};
     return rt_frame_table(&row);
@@ -44,10 +37,10 @@ static RtTable of_instructions(void) {
     return rt_instructions_table(&row);
 }
 
-static RtTable of_comparison(RtTable (*table)(RtComparedRow *row, bool all)) {
+static RtTable of_comparison(bool accels) {
     static const RtComparison comparison = {0};
     static RtComparedRow row = {.comparison = &comparison};
-    return table(&row, true);
+    return rt_comparison_table(&row, accels, true);
 }
 
 typedef struct Section {
@@ -71,16 +64,15 @@ static void list(Section sections[SECTIONS]) {
         {"rounds.csv", true, NULL, RESULTS(RT_ROUNDS)},
         {"frame.csv", true, NULL, .table = of_frames()},
         {"render.csv", true, NULL, RESULTS(RT_RENDERED)},
-        {"distributions.csv", true, NULL, .table = of_distributions(RT_DISTRIBUTIONS)},
-        {"histograms.csv", true, NULL, .table = of_distributions(RT_HISTOGRAMS)},
+        {"distributions.csv", true, NULL, RESULTS(RT_DISTRIBUTIONS)},
+        {"histograms.csv", true, NULL, RESULTS(RT_HISTOGRAMS)},
         {"verify.csv", true, "results/reference/verify/verify.csv", .table = verify_csv},
         {"bench --json: rows", false, NULL, RESULTS(RT_BENCH)},
         {"bench --json: null_runs", false, NULL, RESULTS(RT_NULL_RUNS)},
-        {"bench --json --distribution: distributions", false, NULL,
-         .table = of_distributions(RT_DISTRIBUTIONS)},
+        {"bench --json --distribution: distributions", false, NULL, RESULTS(RT_DISTRIBUTIONS)},
         {"bench --json --callgrind: instructions", false, NULL, .table = of_instructions()},
-        {"compare --json: cells", false, NULL, .table = of_comparison(rt_comparison_table)},
-        {"compare --json: accelerators", false, NULL, .table = of_comparison(rt_compared_accels_table)},
+        {"compare --json: cells", false, NULL, .table = of_comparison(false)},
+        {"compare --json: accelerators", false, NULL, .table = of_comparison(true)},
         {"verify --json: rows", false, NULL, .table = verify_json},
         {"info --extents --json: extents.rows", false, NULL, .table = extents},
     };
@@ -244,15 +236,15 @@ RT_TEST(the_files_that_are_kept_have_these_columns) {
     list(sections);
     for (size_t i = 0; i < SECTIONS; i++) {
         Row row = {.sections = sections, .number = i};
-        RtCsv csv;
+        Csv csv;
         if (!sections[i].example) continue;
-        assert_ok(rt_csv_read(&csv, sections[i].example, error));
+        read_csv(&csv, sections[i].example);
         assert_int_equal(csv.columns, column_count(&sections[i]));
         for (uint32_t c = 0; c < csv.columns; c++) {
             find_column(&row, c);
-            assert_string_equal(rt_csv_name(&csv, c), row.column->id);
+            assert_string_equal(csv_name(&csv, c), row.column->id);
         }
-        rt_csv_clear(&csv);
+        clear_csv(&csv);
     }
 }
 

@@ -49,6 +49,7 @@ static inline void set(uint32_t t, uint32_t c, uint64_t tests, double low, doubl
         RtEstimate ns = {0.5e-9 * (low + high), 1e-9 * low, 1e-9 * high, 1e-9 * low};
         *cell = (RtCell){.counted = true,
                          .timed = true,
+                         .rounds = 6,
                          .tally = {.rays = 1000, .object_tests = 100 * tests},
                          .seconds = ns};
     }

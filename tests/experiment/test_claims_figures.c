@@ -155,11 +155,6 @@ RT_TEST(a_possible_crossover_makes_a_claim_undecided_that_holds_for_the_certain_
     expect(RT_CLAIM_FALSE, CROSSOVER_OF_TIME " > 100", "");
 }
 
-RT_TEST(curves_that_begin_equal_are_named_by_where_they_go) {
-    set_curves(10, 50, 500);
-    expect(RT_CLAIM_FIGURE, CROSSOVER, "bvh is above grid:density=1 from n=10 to 1000 (bvh on random)");
-}
-
 /* At n=100 grid has no tests, so the ratio is infinite there: no line of logarithms leads to it. */
 RT_TEST(a_crossover_next_to_a_count_of_0_is_not_denied) {
     set_curves(20, 0, 0);
@@ -213,24 +208,6 @@ RT_TEST(the_smallest_and_the_largest_of_many_figures_are_of_those_that_are_known
     set(1, 2, 10000, 1, 1);
     set(1, 4, 0, 1, 1);
     expect(RT_CLAIM_FIGURE, claim, "0 over 3 values (bvh on random) to 3.00 over 3 values");
-    tear_down(NULL);
-    set_up_primary(NULL);
-}
-
-/* Up and down 24 times. */
-RT_TEST(more_crossovers_than_are_printed_leave_a_claim_undecided) {
-    RtWorkload scene = {.depth = 1};
-    const char *const claim = "crossover of object_tests of bvh and grid:density=1 in size < 10";
-    rt_results_clear(&results);
-    assert_ok(rt_experiment_add_scenes(e, &scene, "balls:size=1..25+1", "", error));
-    assert_ok(rt_results_init(&results, e, error));
-    for (uint32_t t = 4; t < 29; t++) {
-        results.workloads[t].rays[0] = 1000;
-        set(t, 0, t % 2 ? 10 : 1000, 1, 1);
-        set(t, 1, 100, 1, 1);
-    }
-    expect(RT_CLAIM_FALSE, claim, "16 crossovers");
-    expect(RT_CLAIM_UNDECIDED, "crossover of object_tests of bvh and grid:density=1 in size < 20", "16");
     tear_down(NULL);
     set_up_primary(NULL);
 }

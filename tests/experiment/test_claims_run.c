@@ -55,12 +55,15 @@ PLACE_TEST(a_bad_claim_is_refused_with_its_line_when_the_yaml_is_read) {
 }
 
 /* What is found, and better claims, come after the run. */
-PLACE_TEST(a_finding_is_added_to_a_run_that_is_there_and_nothing_else_is) {
+PLACE_TEST(a_finding_section_and_papers_are_added_to_a_run_that_is_there_and_nothing_else_is) {
     assert_runs(place, "run small.yaml --out out --threads 1");
     write_changed(place, "small.yaml", claiming, "count_only",
-                  "finding: >-\n  Four it is,\n  indeed.\ncount_only");
+                  "finding: >-\n  Four it is,\n  indeed.\nsection: papers\n"
+                  "paper: {citation: \"A & B, 1988\", page: 19, quote: Four <is> best.}\ncount_only");
     assert_ends(place, "run small.yaml --out out --threads 1 --resume", 0, "nothing was left to measure");
     assert_in_file(place, "out/report.html", "<h2>Finding</h2><p>Four it is, indeed.");
+    assert_in_file(place, "out/report.html", "\"quote\":\"Four \\u003cis> best.\"");
+    assert_in_file(place, "out/experiment.yaml", "section: papers");
     assert_runs(place, "report out");
     assert_runs(place, "reproduce out");
     write_changed(place, "small.yaml", claiming, "limit: 1600", "finding: Four.\nlimit: 1599");
@@ -108,33 +111,6 @@ PLACE_TEST(plots_may_change_after_a_run_and_scripts_be_added_to_its_results) {
     if (system("gnuplot --version >/dev/null 2>&1") != 0) return;
     assert_in_file(place, "out/plots/mine.svg", "</svg>");
     assert_in_file(place, "out/plots/later.svg", "</svg>");
-}
-
-static const char quoting[] =
-    "section: papers\n"
-    "paper:\n"
-    "  - {citation: \"A & B, 1988\", page: 19, quote: Four <is> best., verdict: true of its machine}\n"
-    "  - {citation: \"C, 1989\", page: unseen, quote: Five is better.}\n"
-    "rays: [primary]\n";
-
-PLACE_TEST(the_report_quotes_the_papers_with_page_and_verdict_and_marks_what_was_not_seen) {
-    write_changed(place, "small.yaml", claiming, "rays: [primary]\n", quoting);
-    assert_runs(place, "run small.yaml --out out --threads 1");
-    assert_in_file(place, "out/report.html",
-                   "\"citation\":\"A & B, 1988\",\"page\":\"19\",\"seen\":true,"
-                   "\"quote\":\"Four \\u003cis> best.\",\"verdict\":\"true of its machine\"");
-    assert_in_file(place, "out/report.html",
-                   "\"citation\":\"C, 1989\",\"page\":\"unseen\",\"seen\":false,"
-                   "\"quote\":\"Five is better.\",\"verdict\":\"not judged\"");
-}
-
-PLACE_TEST(section_and_paper_may_change_after_a_run) {
-    assert_runs(place, "run small.yaml --out out --threads 1");
-    write_changed(place, "small.yaml", claiming, "rays: [primary]\n", quoting);
-    assert_ends(place, "run small.yaml --out out --threads 1 --resume", 0, "nothing was left to measure");
-    assert_in_file(place, "out/report.html", "From the literature");
-    assert_in_file(place, "out/experiment.yaml", "section: papers");
-    assert_runs(place, "reproduce out");
 }
 
 PLACE_TEST(a_bad_paper_is_refused_with_its_line) {

@@ -3,7 +3,7 @@
  * system: each is read or refused, and nothing is left. Arbitrary damage is tried by tests/fuzz.sh. */
 #include "experiment_testing.h"
 
-#include "results/manifest.h"
+#include "results/result_directory.h"
 
 static const char experiment_text[] =
     "name: small\nquestion: What is left?\nprediction: Nothing.\n"

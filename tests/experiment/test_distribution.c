@@ -100,36 +100,35 @@ RT_TEST(distributions_come_back_from_json_as_they_were) {
 
 /* ---- of a workload ---- */
 
+static const char *const counted[] = {"brute", "grid", "octree", "kd", "clusters", "cache+bvh", "bvh"};
+enum { COUNTED = sizeof counted / sizeof counted[0] };
+
 /* A cloud and these accelerators, with distributions, counted. */
-static void count_cloud(RtExperiment *e, RtResults *results, const char *const *specs, uint32_t count,
-                        int threads) {
+static void count_cloud(RtExperiment *e, RtResults *results) {
     const RtWorkload scene = {.depth = 2, .width = RT_SHARE(64, 24), .height = RT_SHARE(64, 24)};
-    const RtWorkloadOptions options = {.threads = threads, .timing = 1, .count_only = true};
+    const RtWorkloadOptions options = {.threads = 2, .timing = 1, .count_only = true};
     char where[RT_MAX_LABEL];
     rt_experiment_init(e);
     strcpy(e->name, "spread");
     e->distributions = true;
-    e->candidate_count = count;
-    for (uint32_t c = 0; c < count; c++) {
+    e->candidate_count = COUNTED;
+    for (uint32_t c = 0; c < COUNTED; c++) {
         e->candidates[c] = (RtCandidate){.ray_stride = c == 0 ? 3 : 1};
-        strcpy(e->candidates[c].spec, specs[c]);
-        strcpy(e->candidates[c].label, specs[c]);
+        strcpy(e->candidates[c].spec, counted[c]);
+        strcpy(e->candidates[c].label, counted[c]);
     }
-    e->baseline = count - 1;
+    e->baseline = COUNTED - 1;
     assert_ok(rt_experiment_add_scenes(e, &scene, "random:n=300", "", error));
     assert_ok(rt_experiment_check(e, where, error));
     assert_ok(rt_results_init(results, e, error));
     assert_ok(rt_workloads_run(results, &options, error));
 }
 
-static const char *const counted[] = {"brute", "grid", "octree", "kd", "clusters", "cache+bvh", "bvh"};
-enum { COUNTED = sizeof counted / sizeof counted[0] };
-
 /* None of these has rays share what they do. */
 RT_TEST(sums_over_rays_are_the_counts_and_leaves_are_those_of_the_structure) {
     OWNED_MEMORY RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
     OWNED_RESULTS results;
-    count_cloud(e, &results, counted, COUNTED, 2);
+    count_cloud(e, &results);
     for (uint32_t c = 0; c < COUNTED; c++) {
         const RtBuildResult *build = rt_build_at(&results, 0, c);
         for (uint32_t k = 0; k < e->kind_count; k++) {
@@ -147,24 +146,6 @@ RT_TEST(sums_over_rays_are_the_counts_and_leaves_are_those_of_the_structure) {
         assert_int_equal(build->leaves[RT_QUANTITY_leaf_size].sum, build->structure.references);
         assert_int_equal(build->leaves[RT_QUANTITY_leaf_depth].most, build->structure.depth);
     }
-}
-
-RT_TEST(distributions_are_the_same_on_any_number_of_threads) {
-    OWNED_MEMORY RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
-    RtResults one, three;
-    const char *const specs[] = {"grid", "cache+wide", "bvh"};
-    count_cloud(e, &one, specs, 3, 1);
-    count_cloud(e, &three, specs, 3, 3);
-    for (uint32_t c = 0; c < 3; c++) {
-        for (uint32_t k = 0; k < e->kind_count; k++) {
-            const RtCell *a = rt_cell_at(&one, 0, c, e->kinds[k]), *b = rt_cell_at(&three, 0, c, e->kinds[k]);
-            if (!a->distributions) continue;
-            assert_memory_equal(a->distributions, b->distributions,
-                                RT_RAY_QUANTITY_COUNT * sizeof(RtDistribution));
-        }
-    }
-    rt_results_clear(&one);
-    rt_results_clear(&three);
 }
 
 RT_TESTS(distribution, NULL, assert_nothing_is_kept)

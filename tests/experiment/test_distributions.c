@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Distributions in a result directory, and in bench. */
+#include "csv_testing.h"
 #include "experiment_testing.h"
-
-#include "core/text/csv.h"
 
 static const char spread[] = "name: small\nquestion: How long is the tail?\nprediction: Long.\n"
                              "scenes:\n"
@@ -16,18 +15,18 @@ static const char spread[] = "name: small\nquestion: How long is the tail?\npred
 
 PLACES_WITH(spread)
 
-static uint64_t integer_at(const RtCsv *csv, uint32_t row, const char *name) {
-    return strtoull(rt_csv_field(csv, row, rt_csv_find(csv, name)), NULL, 10);
+static uint64_t integer_at(const Csv *csv, uint32_t row, const char *name) {
+    return strtoull(csv_field(csv, row, csv_find(csv, name)), NULL, 10);
 }
 
 /* Three quantities over two kinds of rays of three accelerators, and two over leaves of two; on two scenes.
  */
 PLACE_TEST(a_run_that_asks_for_distributions_has_them_in_tables_of_their_own) {
-    RtCsv csv, bins;
+    Csv csv, bins;
     assert_runs(place, "run small.yaml --out out --threads 1");
     Path path = path_in(place, "out/distributions.csv"), histograms = path_in(place, "out/histograms.csv");
-    assert_ok(rt_csv_read(&csv, path.text, error));
-    assert_ok(rt_csv_read(&bins, histograms.text, error));
+    read_csv(&csv, path.text);
+    read_csv(&bins, histograms.text);
     assert_int_equal(csv.rows, 2 * (3 * 2 * 3 + 2 * 2));
     uint64_t rays = 0, within = 0;
     for (uint32_t row = 0; row < csv.rows; row++) {
@@ -37,8 +36,8 @@ PLACE_TEST(a_run_that_asks_for_distributions_has_them_in_tables_of_their_own) {
     }
     for (uint32_t row = 0; row < bins.rows; row++) within += integer_at(&bins, row, "values");
     assert_int_equal(rays, within);
-    rt_csv_clear(&csv);
-    rt_csv_clear(&bins);
+    clear_csv(&csv);
+    clear_csv(&bins);
     assert_in_file(place, "out/report.html", "Distributions of counts");
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
     assert_in_file(place, "out/plots/histograms-cloud.svg", "</svg>");
@@ -94,15 +93,6 @@ PLACE_TEST(distributions_are_the_same_bytes_on_two_threads_in_parts_and_in_shard
     }
 }
 
-PLACE_TEST(a_finished_run_with_distributions_that_is_resumed_measures_nothing_again) {
-    assert_runs(place, "run small.yaml --out out --threads 1");
-    OWNED_MEMORY char *before = read_in(place, "out/cells.jsonl"),
-                      *table = read_in(place, "out/distributions.csv");
-    assert_runs(place, "run small.yaml --out out --threads 1 --resume");
-    assert_same_file(place, "out/cells.jsonl", before);
-    assert_same_file(place, "out/distributions.csv", table);
-}
-
 PLACE_TEST(reproduce_compares_distributions_byte_for_byte) {
     assert_runs(place, "run small.yaml --out out --threads 1");
     assert_runs(place, "reproduce out");
@@ -120,18 +110,6 @@ PLACE_TEST(reproduce_of_one_scene_compares_its_rows_alone) {
     assert_ends(place, "reproduce out --only balls", 1, "out/counts.csv:8: differs");
     assert_ends(place, "reproduce out --only scattered", 2,
                 "'scattered' is not the label of one of the scenes");
-}
-
-PLACE_TEST(reproduce_of_a_sweep_of_scenes_compares_the_rows_of_each) {
-    write_changed(place, "small.yaml", spread, "n=50\"", "n=50..100*2\"");
-    assert_runs(place, "run small.yaml --out out --threads 1");
-    OWNED_MEMORY char *counts = read_in(place, "out/counts.csv");
-    write_changed(place, "out/counts.csv", counts, "\nballs,", "\nballs,changed");
-    assert_runs(place, "reproduce out --only cloud");
-    assert_runs(place, "reproduce out --only cloud:n=100");
-    write_changed(place, "out/counts.csv", counts, "\ncloud:n=100,", "\ncloud:n=100,changed");
-    assert_runs(place, "reproduce out --only cloud:n=50");
-    assert_int_equal(raytally(place, "reproduce out --only cloud"), 1);
 }
 
 PLACE_TEST(bench_shows_medians_percentiles_and_maxima) {
@@ -167,13 +145,13 @@ PLACE_TEST(hardware_counters_of_version_1_0_are_ignored_in_experiments_and_journ
                 "--hardware is no longer there: run raytally");
 }
 
-static double real_at(const RtCsv *csv, uint32_t row, const char *name) {
-    return strtod(rt_csv_field(csv, row, rt_csv_find(csv, name)), NULL);
+static double real_at(const Csv *csv, uint32_t row, const char *name) {
+    return strtod(csv_field(csv, row, csv_find(csv, name)), NULL);
 }
 
 /* brute, with a stride, is too slow for frames. Resumed, the second time without a table. */
 PLACE_TEST(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_queries_for_each_accelerator) {
-    RtCsv csv;
+    Csv csv;
     Path path = path_in(place, "out/render.csv");
     write_changed(place, "small.yaml", spread, "distributions: yes\ncount_only: yes",
                   "render: yes\nrounds: 6\nmilliseconds: 0\nexpect:\n"
@@ -185,7 +163,7 @@ PLACE_TEST(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_queries_fo
     assert_int_equal(remove(path.text), 0);
     assert_runs(place, "run small.yaml --out out --threads 1 --resume");
     assert_same_file(place, "out/render.csv", first);
-    assert_ok(rt_csv_read(&csv, path.text, error));
+    read_csv(&csv, path.text);
     assert_int_equal(csv.rows, 2 * 2);
     for (uint32_t row = 0; row < csv.rows; row++) {
         assert_int_equal(integer_at(&csv, row, "render_rounds"), 6);
@@ -193,7 +171,7 @@ PLACE_TEST(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_queries_fo
         assert_true(real_at(&csv, row, "query_share_low") > 0 && real_at(&csv, row, "query_share_high") < 1);
         assert_true(real_at(&csv, row, "query_share_low") <= real_at(&csv, row, "query_share"));
     }
-    rt_csv_clear(&csv);
+    clear_csv(&csv);
     char command[320];
     snprintf(command, sizeof command, "sed -i /rendered/d '%s'", path_in(place, "out/cells.jsonl").text);
     assert_int_equal(system(command), 0);

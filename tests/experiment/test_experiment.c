@@ -2,9 +2,9 @@
 /* experiments/: from a YAML to a result directory, whatever the number of threads, and whatever was
  * interrupted. */
 #include "clock_testing.h"
+#include "csv_testing.h"
 #include "experiment_testing.h"
 
-#include "core/text/csv.h"
 #include "core/text/json.h"
 #include "report/report.h"
 #include "results/result_tables.h"
@@ -242,28 +242,28 @@ PLACE_TEST(a_finished_run_that_is_resumed_measures_nothing_and_writes_the_same_t
     assert_same_file(place, "done/rounds.csv", rounds);
 }
 
-static double real_at(const RtCsv *csv, uint32_t row, const char *name) {
-    uint32_t column = rt_csv_find(csv, name);
+static double real_at(const Csv *csv, uint32_t row, const char *name) {
+    uint32_t column = csv_find(csv, name);
     assert_true(column < csv->columns);
-    return strtod(rt_csv_field(csv, row, column), NULL);
+    return strtod(csv_field(csv, row, column), NULL);
 }
 
-static bool is_same_row(const RtCsv *one, uint32_t row, const RtCsv *other, uint32_t other_row) {
+static bool is_same_row(const Csv *one, uint32_t row, const Csv *other, uint32_t other_row) {
     const char *const names[] = {"scene", "kind", "accel", "baseline"};
     for (int i = 0; i < 4; i++) {
-        const char *text = rt_csv_field(one, row, rt_csv_find(one, names[i]));
-        if (strcmp(text, rt_csv_field(other, other_row, rt_csv_find(other, names[i]))) != 0) return false;
+        const char *text = csv_field(one, row, csv_find(one, names[i]));
+        if (strcmp(text, csv_field(other, other_row, csv_find(other, names[i]))) != 0) return false;
     }
     return true;
 }
 
 /* Whoever has them can compute them again: medians and ratios, of thinned candidates, too. */
 PLACE_TEST(the_times_are_made_of_those_of_the_rounds) {
-    RtCsv times, rounds;
+    Csv times, rounds;
     Path times_path = path_in(place, "out/times.csv"), rounds_path = path_in(place, "out/rounds.csv");
     assert_ok(run(place, "out", RT_START_FRESH, 1, nobody, error));
-    assert_ok(rt_csv_read(&times, times_path.text, error));
-    assert_ok(rt_csv_read(&rounds, rounds_path.text, error));
+    read_csv(&times, times_path.text);
+    read_csv(&rounds, rounds_path.text);
     assert_int_equal(rounds.rows, 3 * times.rows);
     for (uint32_t i = 0; i < times.rows; i++) {
         double ns[3], wall[3], ratio[3];
@@ -279,8 +279,8 @@ PLACE_TEST(the_times_are_made_of_those_of_the_rounds) {
         assert_true(rt_median(wall, 3) == real_at(&times, i, "wall_ns"));
         assert_true(fabs(rt_median(ratio, 3) / real_at(&times, i, "ratio") - 1) < 1e-4);
     }
-    rt_csv_clear(&times);
-    rt_csv_clear(&rounds);
+    clear_csv(&times);
+    clear_csv(&rounds);
 }
 
 PLACE_TEST(a_missing_scene_is_an_error_unless_it_is_optional) {

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "core/base/memory.h"
-#include "results/frame_table.h"
+#include "results/result_tables.h"
 
 /* A scene with 100 primary, 300 shadow and 100 reflection rays; and one with primary rays alone. */
 static RtExperiment *e;
@@ -108,41 +108,12 @@ FRAME_TEST(an_accelerator_without_one_kind_of_ray_has_no_frame_and_does_not_win)
            "all is wide: 200 times as fast as brute.");
 }
 
-FRAME_TEST(an_overlay_is_never_the_fastest_of_the_group) {
-    set(0, WIDE, "wide:width=8", 4000, 4000, 6);
-    expect_sentence(
-        0, "On balls, clusters is the fastest of the six: 50.0 times as fast, with 200 times fewer object "
-           "tests than brute. grid follows with 29.4 times. light+wide is 182 times as fast as wide alone. "
-           "The fastest of all is light+wide: 364 times as fast as brute.");
-}
-
 FRAME_TEST(fewer_object_tests_than_the_fastest_makes_are_told) {
     expect_sentence(
         1, "On tetra, grid is the fastest of the six: 100 times as fast, with 30.0 times fewer object tests "
            "than brute. clusters follows with 50.0 times. clusters needs the fewest object tests: 200 times "
            "fewer than brute. light+wide is 1.00 times as fast as wide alone (level). The fastest of all is "
            "light+wide: 200 times as fast as brute (level with wide).");
-}
-
-/* Over wide, which takes 0.02 ms on balls. */
-FRAME_TEST(a_sentence_about_many_overlays_is_not_cut_off) {
-    char where[RT_MAX_LABEL], spec[RT_MAX_SPEC_CHARS];
-    rt_results_clear(&results);
-    for (int i = 1; i <= 60; i++) {
-        snprintf(spec, sizeof spec, "light:cells=%d+wide", i);
-        add(spec, "over wide");
-    }
-    assert_ok(rt_experiment_check(e, where, error));
-    fill();
-    for (uint32_t c = IDEAL + 1; c < e->candidate_count; c++)
-        set(0, c, "light:cells=1+wide:width=8", 40, 40, 6);
-    OWNED_MEMORY char *text = rt_frame_sentence(&results, 0);
-    assert_true(strlen(text) > 2000);
-    assert_non_null(
-        strstr(text, "light+wide is 1.82 times as fast as wide alone, light:cells=1+wide 1.00 times"));
-    assert_non_null(
-        strstr(text, ", light:cells=60+wide 1.00 times (level). The fastest of all is light+wide: "));
-    assert_string_equal(text + strlen(text) - 6, "brute.");
 }
 
 static bool says(uint32_t t, const char *part) {
@@ -174,8 +145,9 @@ FRAME_TEST(an_overlay_whose_base_is_not_measured_has_no_gain_and_what_is_not_tim
     assert_true(is_unknown(row.gain) && is_unknown(row.tests_gain));
     assert_int_equal(row.winner, CLUSTERS);
     assert_non_null(table.row(table.context, GRID));
-    assert_true(is_unknown(row.cost[RT_FRAME_ALL].low) && is_unknown(row.cost[RT_FRAME_ALL].high));
-    assert_false(is_unknown(row.cost[RT_FRAME_PRIMARY].low));
+    assert_true(is_unknown(row.cost[RT_FRAME_ALL].seconds.low) &&
+                is_unknown(row.cost[RT_FRAME_ALL].seconds.high));
+    assert_false(is_unknown(row.cost[RT_FRAME_PRIMARY].seconds.low));
 }
 
 FRAME_TEST(where_nothing_is_timed_object_tests_decide) {
@@ -204,10 +176,10 @@ FRAME_TEST(a_frame_weighs_each_kind_of_ray_by_its_whole_set) {
     memcpy(w->whole_rays, w->rays, sizeof w->rays);
     w->whole_rays[RT_RAY_SHADOW] = 2700;
     assert_non_null(table.row(table.context, GRID));
-    assert_true(row.cost[RT_FRAME_ALL].rays == 2900);
+    assert_true(row.cost[RT_FRAME_ALL].weight == 2900);
     assert_true(row.cost[RT_FRAME_ALL].object_tests == 2900 * 20);
-    assert_true(fabs(row.cost[RT_FRAME_ALL].seconds - 1e-9 * (200 * 80 + 2700 * 400)) < 1e-15);
-    assert_true(fabs(row.without[RT_FRAME_SHADOW].seconds - 1e-9 * 2700 * 8000) < 1e-15);
+    assert_true(fabs(row.cost[RT_FRAME_ALL].seconds.median - 1e-9 * (200 * 80 + 2700 * 400)) < 1e-15);
+    assert_true(fabs(row.without[RT_FRAME_SHADOW].seconds.median - 1e-9 * 2700 * 8000) < 1e-15);
     rt_frame_title(&results, 0, text);
     assert_string_equal(text, "0 objects, a frame of 10x10: 100 primary, 2700 shadow and 100 secondary rays; "
                               "of 2900 rays, 500 measured");

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Shards of one experiment, joined. */
+#include "csv_testing.h"
 #include "experiment_testing.h"
 
 #include "core/base/file.h"
-#include "core/text/csv.h"
 
 #include <sys/stat.h>
 
@@ -34,7 +34,7 @@ static void refused(const Place *place, const char *arguments, const char *says)
 }
 
 PLACE_TEST(four_shards_make_the_counts_of_one_run) {
-    RtCsv csv;
+    Csv csv;
     assert_runs(place, "run small.yaml --threads 1 --out one");
     assert_runs(place, "merge s3 s1 s4 s2 -o all");
     assert_in_file(place, "output", "undecided        object_tests of grid falls with density on cloud");
@@ -46,11 +46,11 @@ PLACE_TEST(four_shards_make_the_counts_of_one_run) {
     assert_in_file(place, "all/report.html", "cloud:n=200");
     assert_runs(place, "reproduce all");
     Path times = path_in(place, "all/times.csv");
-    assert_ok(rt_csv_read(&csv, times.text, error));
+    read_csv(&csv, times.text);
     assert_int_equal(csv.rows, 5 * 2 * 4);
-    assert_true(*rt_csv_field(&csv, 0, rt_csv_find(&csv, "host")));
-    assert_true(rt_csv_find(&csv, "cpu") < csv.columns);
-    rt_csv_clear(&csv);
+    assert_true(*csv_field(&csv, 0, csv_find(&csv, "host")));
+    assert_true(csv_find(&csv, "cpu") < csv.columns);
+    clear_csv(&csv);
     assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all"), 2);
     assert_runs(place, "merge s1 s2 s3 s4 -o all --force");
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Times paired by round: over one kind of rays and over all, and what is the best. */
 #include "claims_testing.h"
-#include "results/paired.h"
+#include "results/results.h"
 
 enum { ROUNDS = 7 };
 

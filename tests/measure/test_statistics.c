@@ -225,39 +225,4 @@ RT_TEST(as_many_rounds_are_taken_as_so_many_cells_ask_for) {
     assert_int_equal(rt_rounds_for(rt_coverage_of_each(100)), 17);
 }
 
-/* Draws rounds of `cells` cells with a spread of half a percent about `truth`; returns how many report a
- * difference. */
-static int decided(uint64_t seed, uint32_t cells, double truth) {
-    RtRandom random = rt_random(seed, cells);
-    const double coverage = rt_coverage_of_each(cells);
-    const uint32_t rounds = rt_rounds_for(coverage);
-    int count = 0;
-    for (uint32_t c = 0; c < cells; c++) {
-        double ratios[RT_MAX_ROUNDS];
-        for (uint32_t r = 0; r < rounds; r++) {
-            double noise = 0;
-            for (int i = 0; i < 12; i++) noise += (double)rt_random_unit(&random) - 0.5; /* deviation 1 */
-            ratios[r] = truth * exp(0.005 * noise);
-        }
-        RtEstimate e = rt_estimate_at(ratios, rounds, coverage);
-        count += !rt_estimate_holds(&e, 1);
-    }
-    return count;
-}
-
-/* At most a twentieth of 1000 comparisons of equal programs report a difference, however many cells they
- * have; and a difference of 2 % is found. */
-RT_TEST(comparisons_of_many_cells_report_no_more_than_those_of_one_and_find_two_percent) {
-    const uint32_t cells[] = {1, 4, 40};
-    for (size_t i = 0; i < 3; i++) {
-        int reports = 0, found = 0;
-        for (uint64_t seed = 0; seed < 1000; seed++) {
-            reports += decided(seed, cells[i], 1) > 0;
-            if (seed < 100) found += decided(seed, cells[i], 1.02);
-        }
-        assert_true(reports <= 70); /* 50 and three standard errors */
-        assert_true(found >= 99 * (int)cells[i]);
-    }
-}
-
 RT_TESTS(statistics, NULL, NULL)

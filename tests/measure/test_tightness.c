@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* measure/tightness.h: known ratios of projected areas are found, within their intervals. By Cauchy the
+/* measure/extents_table.h: known ratios of projected areas are found, within their intervals. By Cauchy the
  * mean projected area of a convex body is a quarter of its surface; of a flat one half its area. */
 #include "testing.h"
 
-#include "core/scene/scene.h"
-#include "measure/tightness.h"
+#include "measure/extents_table.h"
 
 #define PI 3.14159265358979323846
 
@@ -15,11 +14,8 @@ enum { BOX, SPHERE, OBB, SLABS_3, SLABS_4, SLABS_7, SLABS_10, SLABS_13, CHOICES,
 
 /* Counts for all objects of `geometry`, which is finished here and cleared. */
 static void count(RtGeometry *geometry, RtShape shape, RtTightness *out) {
-    RtPopulation population;
     assert_ok(rt_geometry_finish(geometry, error));
-    assert_ok(rt_population_init(&population, geometry, shape, error));
-    assert_ok(rt_tightness_count(&population, choices, CHOICES, LINES, 1, out, error));
-    rt_population_clear(&population);
+    assert_ok(rt_tightness_count(geometry, shape, choices, CHOICES, LINES, 1, out, error));
     rt_geometry_clear(geometry);
 }
 

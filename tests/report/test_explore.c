@@ -5,7 +5,6 @@
 
 #include "render/render_testing.h"
 #include "report/explore_record.h"
-#include "report/explore_shapes.h"
 
 #include <zlib.h>
 
@@ -62,34 +61,6 @@ static Reader expand(const RtBytes *bytes, uint8_t *buffer, size_t size) {
 }
 
 /* ---- bytes ---- */
-
-RT_TEST(numbers_are_written_seven_bits_to_a_byte_the_lowest_first) {
-    static const uint8_t expected[] = {0,   127, 128, 1,   172, 2,   255, 255,
-                                       255, 255, 255, 255, 255, 255, 255, 1};
-    OWNED_BYTES bytes = {0};
-    rt_bytes_put_number(&bytes, 0);
-    rt_bytes_put_number(&bytes, 127);
-    rt_bytes_put_number(&bytes, 128);
-    rt_bytes_put_number(&bytes, 300);
-    rt_bytes_put_number(&bytes, UINT64_MAX);
-    assert_int_equal(bytes.count, sizeof expected);
-    assert_memory_equal(bytes.data, expected, sizeof expected);
-}
-
-RT_TEST(compressed_bytes_expand_to_what_was_put_in_with_lengths_in_their_places) {
-    OWNED_BYTES bytes = {0};
-    const RtBox box = {rt_vec3(-1, 2, 0.5f), rt_vec3(3, 4, INFINITY)};
-    const uint32_t place = rt_bytes_begin(&bytes);
-    rt_bytes_put_box(&bytes, &box);
-    rt_bytes_end(&bytes, place);
-    assert_ok(rt_bytes_compress(&bytes, error));
-    uint8_t buffer[64];
-    Reader r = expand(&bytes, buffer, sizeof buffer);
-    assert_int_equal(take_u32(&r), 24);
-    for (int a = 0; a < 3; a++) assert_true(take_float(&r) == box.lo.at[a]);
-    for (int a = 0; a < 3; a++) assert_true(take_float(&r) == box.hi.at[a]);
-    assert_int_equal(r.at, r.count);
-}
 
 static RtStatus fill_and_compress(RtError *error) {
     OWNED_BYTES bytes = {0};

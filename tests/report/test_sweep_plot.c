@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Experiments that sweep parameters: rows, columns, and the plot that needs no script. */
+#include "csv_testing.h"
 #include "experiment_testing.h"
-
-#include "core/text/csv.h"
 
 #include <unistd.h>
 
@@ -33,19 +32,19 @@ RT_TEST_IN_PLACE(each_value_is_a_row_and_each_parameter_a_column_at_the_end) {
     OWNED_CSV csv;
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     Path path = path_in(place, "out/counts.csv");
-    assert_ok(rt_csv_read(&csv, path.text, error));
+    read_csv(&csv, path.text);
     assert_int_equal(csv.rows, 2 * 8 + 3);
-    assert_string_equal(rt_csv_name(&csv, csv.columns - 3), "scene.n");
-    assert_string_equal(rt_csv_name(&csv, csv.columns - 2), "accel.density");
-    assert_string_equal(rt_csv_name(&csv, csv.columns - 1), "accel.build");
+    assert_string_equal(csv_name(&csv, csv.columns - 3), "scene.n");
+    assert_string_equal(csv_name(&csv, csv.columns - 2), "accel.density");
+    assert_string_equal(csv_name(&csv, csv.columns - 1), "accel.build");
     uint32_t n = csv.columns - 3, density = csv.columns - 2, build = csv.columns - 1, row = 8 + 5;
-    assert_string_equal(rt_csv_field(&csv, row, rt_csv_find(&csv, "scene")), "cloud:n=200");
-    assert_string_equal(rt_csv_field(&csv, row, rt_csv_find(&csv, "accel")), "grid:density=16");
-    assert_string_equal(rt_csv_field(&csv, row, n), "200");
-    assert_string_equal(rt_csv_field(&csv, row, density), "16");
-    assert_string_equal(rt_csv_field(&csv, row, build), "");
-    assert_string_equal(rt_csv_field(&csv, 18, n), "");
-    assert_string_equal(rt_csv_field(&csv, 18, build), "lbvh");
+    assert_string_equal(csv_field(&csv, row, csv_find(&csv, "scene")), "cloud:n=200");
+    assert_string_equal(csv_field(&csv, row, csv_find(&csv, "accel")), "grid:density=16");
+    assert_string_equal(csv_field(&csv, row, n), "200");
+    assert_string_equal(csv_field(&csv, row, density), "16");
+    assert_string_equal(csv_field(&csv, row, build), "");
+    assert_string_equal(csv_field(&csv, 18, n), "");
+    assert_string_equal(csv_field(&csv, 18, build), "lbvh");
 }
 
 RT_TEST_IN_PLACE(without_scripts_a_plot_is_drawn_for_each_parameter_and_measure) {
@@ -71,7 +70,7 @@ RT_TEST_IN_PLACE(without_scripts_a_plot_is_drawn_for_each_parameter_and_measure)
     assert_in_file(place, drawn[5], "viewBox=\"0 0 480 ");
 }
 
-/* Lines by line as src/report/sweep_data.h says; a legend and shades in the order of the sweep need it. */
+/* Lines by line as src/report/plot.c says; a legend and shades in the order of the sweep need it. */
 RT_TEST_IN_PLACE(the_data_of_a_plot_has_a_block_per_scene_and_in_it_a_line_per_accelerator) {
     const Place *place = *state;
     unsigned color, before = 0;
@@ -140,15 +139,15 @@ RT_TEST_IN_PLACE(bench_takes_sweeps_of_scenes_and_accelerators) {
     assert_int_equal(raytally(place, "bench 'random:n=10|20' --accel bvh --accel 'grid:density=1..4*2' "
                                      "--ray-stride 3 --rays primary --size 8x8 --count-only --csv rows.csv"),
                      0);
-    RtCsv csv;
+    Csv csv;
     Path path = path_in(place, "rows.csv");
-    assert_ok(rt_csv_read(&csv, path.text, error));
+    read_csv(&csv, path.text);
     assert_int_equal(csv.rows, 2 * 4);
     for (uint32_t row = 1; row < 4; row++)
-        assert_string_equal(rt_csv_field(&csv, row, rt_csv_find(&csv, "ray_stride")), "3");
-    assert_string_equal(rt_csv_field(&csv, 7, csv.columns - 2), "20");
-    assert_string_equal(rt_csv_field(&csv, 7, csv.columns - 1), "4");
-    rt_csv_clear(&csv);
+        assert_string_equal(csv_field(&csv, row, csv_find(&csv, "ray_stride")), "3");
+    assert_string_equal(csv_field(&csv, 7, csv.columns - 2), "20");
+    assert_string_equal(csv_field(&csv, 7, csv.columns - 1), "4");
+    clear_csv(&csv);
     assert_int_equal(raytally(place, "bench 'random:n=10|20' --accel bvh --rays primary --count-only --json"),
                      0);
     assert_in_file(place, "output", "random:n=10");

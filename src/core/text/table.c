@@ -2,7 +2,6 @@
 #include "core/text/table.h"
 
 #include "core/base/words.h"
-#include "core/text/csv.h"
 #include "core/text/json.h"
 
 #include <assert.h>
@@ -11,22 +10,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* The fields of a row, in the order of the columns. */
-typedef struct Line {
-    size_t count;
-    const RtTableColumn *columns[RT_MAX_TABLE_COLUMNS];
-    RtField fields[RT_MAX_TABLE_COLUMNS];
-} Line;
-
-typedef struct Writer Writer;
-struct Writer {
-    const RtTable *table;
-    void (*put)(Writer *writer, const Line *line, const void *row); /* `row` NULL: the header */
-    FILE *out;
-    int *widths;  /* of text */
-    json_t *page; /* of rt_table_page */
-};
 
 static const struct {
     const char *says, *format;
@@ -40,12 +23,12 @@ const char *rt_form_name(RtForm form) {
     return forms[form].says;
 }
 
-/* Numbers are right-aligned. */
+/* Whether the fields are numbers, which are right-aligned. */
 static bool is_number(const RtTableColumn *column) {
     return column->form >= RT_FORM_integer;
 }
 
-/* A number, or one with its interval. */
+/* The same, or numbers with intervals. */
 static bool is_measured(const RtTableColumn *column) {
     return is_number(column) || column->form == RT_FORM_interval;
 }
@@ -235,6 +218,22 @@ static json_t *field_json(RtForm form, const RtField *field) {
 
 /* ---- rows ---- */
 
+/* The fields of a row, in the order of the columns. */
+typedef struct Line {
+    size_t count;
+    const RtTableColumn *columns[RT_MAX_TABLE_COLUMNS];
+    RtField fields[RT_MAX_TABLE_COLUMNS];
+} Line;
+
+typedef struct Writer Writer;
+struct Writer {
+    const RtTable *table;
+    void (*put)(Writer *writer, const Line *line, const void *row); /* `row` NULL: the header */
+    FILE *out;
+    int *widths;  /* of text */
+    json_t *page; /* of rt_table_page */
+};
+
 static RtField field_of(const RtColumnGroup *group, size_t i, const void *row) {
     if (row && group->of) row = group->of(row);
     return row ? group->columns[i].get(row, &group->columns[i]) : rt_field_missing();
@@ -275,11 +274,23 @@ static void walk(Writer w) {
 
 /* ---- CSV ---- */
 
+/* Quoted if necessary (RFC 4180): a line that begins with # would be a comment; a carriage return before a
+ * line break belongs to that. */
+static void put_csv_field(FILE *out, const char *field) {
+    if (!strpbrk(field, ",\"\r\n") && *field != '#') {
+        fputs(field, out);
+        return;
+    }
+    fputc('"', out);
+    for (; *field; field++) fprintf(out, *field == '"' ? "\"\"" : "%c", *field);
+    fputc('"', out);
+}
+
 static void put_csv(Writer *w, const Line *line, const void *row) {
     char buffer[RT_MAX_FIELD];
     for (size_t i = 0; i < line->count; i++) {
         if (i) fputc(',', w->out);
-        rt_csv_put(w->out, row ? line_show(line, i, buffer) : line->columns[i]->id);
+        put_csv_field(w->out, row ? line_show(line, i, buffer) : line->columns[i]->id);
     }
     fputc('\n', w->out);
 }
@@ -308,6 +319,7 @@ enum { HIDDEN = -1, GAP = 2 }; /* the width of a column of another part; between
 static void put_text(Writer *w, const Line *line, const void *row) {
     char buffer[RT_MAX_FIELD];
     size_t last_shown = line->count - 1;
+    if (w->table->above) w->table->above(w->table->context, row, w->out);
     while (last_shown > 0 && w->widths[last_shown] == HIDDEN) last_shown--;
     for (size_t i = 0; i < line->count; i++) {
         if (w->widths[i] == HIDDEN) continue;
@@ -327,15 +339,12 @@ void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out
     write_row(&(Writer){.table = table, .put = put_text, .out = out, .widths = widths}, row);
 }
 
-static size_t column_count(const RtTable *table) {
+/* Sets part[] to the widths of the part that begins with column *next, 0 at first. Moves *next; false after
+ * the last part. */
+static bool next_part(const RtTable *table, const int widths[RT_MAX_TABLE_COLUMNS], int page, size_t *next,
+                      int part[RT_MAX_TABLE_COLUMNS]) {
     size_t count = 0;
     for (size_t g = 0; g < table->group_count; g++) count += table->groups[g].count;
-    return count;
-}
-
-bool rt_table_part(const RtTable *table, const int widths[RT_MAX_TABLE_COLUMNS], int page, size_t *next,
-                   int part[RT_MAX_TABLE_COLUMNS]) {
-    const size_t count = column_count(table);
     size_t end = *next > 0 ? *next : 1;
     int left = page - widths[0];
     if (*next == count) return false;
@@ -351,8 +360,7 @@ void rt_table_text(const RtTable *table, FILE *out) {
     int widths[RT_MAX_TABLE_COLUMNS], part[RT_MAX_TABLE_COLUMNS];
     rt_table_widths(table, widths);
     size_t next = 0;
-    for (const char *before = ""; rt_table_part(table, widths, rt_page_width(out), &next, part);
-         before = "\n") {
+    for (const char *before = ""; next_part(table, widths, rt_page_width(out), &next, part); before = "\n") {
         fputs(before, out);
         walk((Writer){.table = table, .put = put_text, .out = out, .widths = part});
     }

@@ -170,6 +170,8 @@ typedef struct RtTable {
     size_t row_count;
     const void *(*row)(void *context, size_t i); /* NULL: skip this row; the next call may reuse the row */
     void *context;
+    /* Text: prints lines above each row, and with the row NULL above the header; or NULL. */
+    void (*above)(void *context, const void *row, FILE *out);
     const char *(*color)(const void *row);   /* pages: colour of a dot before the row; or NULL */
     RtStanding (*standing)(const void *row); /* pages; NULL: no marks */
     const char *caption;                     /* LaTeX, pages; or NULL */
@@ -180,6 +182,9 @@ typedef struct RtTable {
 #define RT_GROUPS(array) .groups = array, .group_count = sizeof(array) / sizeof *(array)
 
 void rt_table_csv(const RtTable *table, FILE *out);
+
+/* A table that is wider than the page (rt_page_width) is printed in parts, with a blank line between them:
+ * each has the first column, and as many of the others as fit. */
 void rt_table_text(const RtTable *table, FILE *out);
 void rt_table_markdown(const RtTable *table, FILE *out);
 
@@ -199,11 +204,5 @@ json_t *rt_table_page(const RtTable *table);
  * far, and one row (NULL: the header). */
 void rt_table_widths(const RtTable *table, int widths[RT_MAX_TABLE_COLUMNS]);
 void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out);
-
-/* A table that is wider than the page (rt_page_width) is printed in parts: each has the first column, and as
- * many of the others as fit. Sets part[], for rt_table_line, to the widths of the part that begins with
- * column *next, 0 at first; other columns are hidden. Moves *next; false after the last part. */
-bool rt_table_part(const RtTable *table, const int widths[RT_MAX_TABLE_COLUMNS], int page, size_t *next,
-                   int part[RT_MAX_TABLE_COLUMNS]);
 
 #endif

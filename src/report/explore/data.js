@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program recorded, as src/report/explore_record.h and explore_shapes.h describe it.
+// What the program recorded, as src/report/explore_record.h describes it.
 
 import { light } from './light.js';
 

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Judging claims: a figure for each cell or line of cells, and the verdict over all of them. */
-#include "claims/claims_figures.h"
+/* Judging claims: a figure for each cell or line of cells, and the verdict over all of them; and all claims
+ * of an experiment as an exit code and as text. */
+#include "claims/claims_points.h"
 
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/table.h"
-#include "results/paired.h"
+#include "results/result_tables.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -50,15 +51,8 @@ static RtClaimVerdict compare(const RtClaim *claim, double low, double high) {
     return first && last ? RT_CLAIM_HOLDS : first || last ? RT_CLAIM_UNDECIDED : RT_CLAIM_FALSE;
 }
 
-/* What claims are judged by. */
-typedef struct Judge {
-    const RtResults *results;
-    const RtClaim *claim;
-    double coverage; /* of each interval of a tracing time */
-} Judge;
-
 /* The verdict on one step of a trend. */
-static RtClaimVerdict step_of(const Judge *judge, const RtClaimPoint *one, const RtClaimPoint *next) {
+static RtClaimVerdict step_of(const RtClaimCase *judge, const RtClaimPoint *one, const RtClaimPoint *next) {
     const RtClaim *claim = judge->claim;
     RtEstimate before = one->y, after = next->y;
     if (claim->measure == RT_CLAIM_TIME && one->workload == next->workload) {
@@ -74,7 +68,7 @@ static RtClaimVerdict step_of(const Judge *judge, const RtClaimPoint *one, const
 }
 
 /* By the first step with the worst verdict; if all hold, from the first value to the last. */
-static void judge_trend(const Judge *judge, Figure *figure) {
+static void judge_trend(const RtClaimCase *judge, Figure *figure) {
     const RtClaimPoint *points = figure->points;
     figure->to = figure->count - 1;
     for (uint32_t i = 0, next = 0; i < figure->count; i++) {
@@ -116,7 +110,7 @@ static bool has_too_few_rays(const Figure *figure) {
     return figure->rays < RT_CLAIM_RAYS;
 }
 
-static void judge_figure(const Judge *judge, Figure *figure) {
+static void judge_figure(const RtClaimCase *judge, Figure *figure) {
     const RtClaim *claim = judge->claim;
     figure->verdict = RT_CLAIM_HOLDS;
     figure->rays = UINT64_MAX;
@@ -337,7 +331,8 @@ static uint32_t count_of_kind(const RtClaimPoint *points, uint32_t count) {
 }
 
 /* Reorders the points; returns the number of figures[]. */
-static uint32_t make_figures(const Judge *judge, RtClaimPoint *points, uint32_t count, Figure *figures) {
+static uint32_t make_figures(const RtClaimCase *judge, RtClaimPoint *points, uint32_t count,
+                             Figure *figures) {
     const RtClaim *claim = judge->claim;
     const bool line = claim->form >= RT_CLAIM_EXPONENT, all = claim->form == RT_CLAIM_CORRELATION;
     uint32_t made = 0;
@@ -391,7 +386,8 @@ static void put_readout(RtClaimResult *result, const RtExperiment *experiment, c
     put_figure(result, experiment, claim, most);
 }
 
-static void judge_points(const Judge *judge, RtClaimPoint *points, uint32_t count, RtClaimResult *result) {
+static void judge_points(const RtClaimCase *judge, RtClaimPoint *points, uint32_t count,
+                         RtClaimResult *result) {
     const RtExperiment *experiment = judge->results->experiment;
     const RtClaim *claim = judge->claim;
     Figure *figures = rt_alloc(count, sizeof *figures);
@@ -417,7 +413,7 @@ double rt_claims_coverage(const RtResults *results, uint32_t *count) {
         if (rt_claim_parse(experiment, experiment->claims[i], &claim, NULL) != RT_OK || claim.readout)
             continue;
         if (claim.measure == RT_CLAIM_TIME || claim.first == RT_CLAIM_TIME)
-            *count += rt_claim_gather(results, &claim, 0, NULL);
+            *count += rt_claim_gather(&(RtClaimCase){results, &claim, 0}, NULL);
     }
     return rt_coverage_of_each(*count);
 }
@@ -425,9 +421,9 @@ double rt_claims_coverage(const RtResults *results, uint32_t *count) {
 static void judge_parsed(const RtResults *results, const RtClaim *claim, RtClaimPoint *points,
                          RtClaimResult *result) {
     uint32_t known = 0, intervals;
-    const Judge judge = {results, claim,
-                         claim->readout ? rt_coverage_of_each(1) : rt_claims_coverage(results, &intervals)};
-    const uint32_t count = rt_claim_gather(results, claim, judge.coverage, points);
+    const RtClaimCase judge = {
+        results, claim, claim->readout ? rt_coverage_of_each(1) : rt_claims_coverage(results, &intervals)};
+    const uint32_t count = rt_claim_gather(&judge, points);
     for (uint32_t k = 0; k < count; k++) known += rt_claim_point_known(&points[k]) ? 1 : 0;
     if (!rt_claim_any_measured(results, claim, points, count)) {
         *result = (RtClaimResult){RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured"};
@@ -461,4 +457,68 @@ void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result)
         judge_parsed(results, &claim, points, result);
     }
     rt_free(points);
+}
+
+/* ---- all claims ---- */
+
+RtStatus rt_claims_check(const RtResults *results, RtError *error) {
+    const RtExperiment *experiment = results->experiment;
+    uint32_t wrong = 0, first = 0, claims = 0;
+    RtClaimResult result;
+    for (uint32_t i = experiment->claim_count; i-- > 0;) {
+        rt_claim_judge(results, i, &result);
+        claims += result.verdict != RT_CLAIM_FIGURE;
+        if (result.verdict != RT_CLAIM_FALSE) continue;
+        first = i;
+        wrong++;
+    }
+    if (wrong == 0) return RT_OK;
+    return rt_fail(error, RT_MISMATCH, "%" PRIu32 " of %" PRIu32 " claims do not hold, the first: %s", wrong,
+                   claims, experiment->claims[first]);
+}
+
+void rt_claims_level(const RtResults *results, char out[RT_MAX_CLAIM_LEVEL]) {
+    uint32_t count;
+    const double coverage = rt_claims_coverage(results, &count);
+    out[0] = '\0';
+    if (count > 1)
+        rt_append_text(out, RT_MAX_CLAIM_LEVEL,
+                       "The %" PRIu32 " intervals of tracing times in these claims hold together with 95 %% "
+                       "confidence: each covers %.6g %%.",
+                       count, 100 * coverage);
+}
+
+static void print_dropped(void *context, const char *claim) {
+    fprintf(context, "  %-15s  %s\n", "dropped since", claim);
+}
+
+void rt_claims_print(const RtResults *results, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char level[RT_MAX_CLAIM_LEVEL];
+    bool open = false;
+    if (experiment->claim_count)
+        fprintf(out, "\nClaims%s:\n",
+                experiment->quick ? " (made for the full experiment; this is its --quick variant)" : "");
+    for (uint32_t i = 0; i < experiment->claim_count; i++) {
+        RtClaimResult result;
+        rt_claim_judge(results, i, &result);
+        fprintf(out, "  %-15s  %s%s\n  %-15s  %s\n", rt_claim_verdict_name(result.verdict),
+                experiment->claims[i], rt_claim_is_later(results, i) ? " [" RT_CLAIM_LATER "]" : "", "",
+                result.figures);
+        open |= result.verdict == RT_CLAIM_UNDECIDED;
+    }
+    rt_claims_dropped(results, print_dropped, out);
+    if (open)
+        fprintf(out,
+                "  undecided: the interval includes the bound, a value is missing, fewer than %d rays were "
+                "measured, or no crossover is certain\n",
+                RT_CLAIM_RAYS);
+    rt_claims_level(results, level);
+    if (*level) fprintf(out, "  %s\n", level);
+}
+
+void rt_print_summary(const RtResults *results, FILE *out) {
+    rt_print_outcome(results, out);
+    rt_claims_print(results, out);
+    rt_print_null_runs(results, out);
 }
