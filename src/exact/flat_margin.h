@@ -15,7 +15,7 @@
 #ifndef RT_EXACT_FLAT_MARGIN_H
 #define RT_EXACT_FLAT_MARGIN_H
 
-#include "exact/line.h"
+#include "exact/exact.h"
 
 /* The factor of delta. */
 #define RT_MARGIN 0x1p-20

@@ -3,7 +3,6 @@
  * themselves, and that all lines through a point agree whether it is inside. */
 #include "solids_testing.h"
 
-#include "exact/exact_hit.h"
 #include "exact/referee.h"
 
 /* ---- meshes of boxes ---- */
@@ -24,16 +23,26 @@ static uint32_t put_box(RtVec3 lo, RtVec3 hi, bool turned, RtTriangle *out) {
     return count;
 }
 
-static uint32_t add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_t count) {
+static RtCsgTerm add_mesh(RtCsgBuilder *b, const RtTriangle *triangles, uint32_t count) {
     RtTransform still = rt_transform_identity();
-    uint32_t index;
-    assert_ok(rt_solid_add_mesh(set, triangles, count, &still, &index, error));
-    return index;
+    uint32_t solid;
+    RtCsgTerm term;
+    assert_ok(rt_solid_add_mesh(&b->set, triangles, count, &still, &solid, error));
+    assert_ok(rt_csg_solid(b, solid, 0, &term, error));
+    return term;
+}
+
+/* The tree of a mesh alone, the first solid of `forest`. */
+static RtCsg tree_of_mesh(RtCsgForest *forest, const RtTriangle *triangles, uint32_t count) {
+    OWNED_BUILDER b = {0};
+    RtCsg tree;
+    assert_ok(rt_csg_compile(forest, &b, add_mesh(&b, triangles, count), true, &tree, error));
+    return tree;
 }
 
 /* A large box and others at halves, some of them inside out, in one mesh: they overlap, touch, share faces
  * and dig holes, and where two are dug out of one the depth is below 0. */
-static uint32_t add_boxes(RtSolidSet *set, RtRandom *random) {
+static RtCsg tree_of_boxes(RtCsgForest *forest, RtRandom *random) {
     RtTriangle triangles[12 * BOXES];
     uint32_t count = put_box(rt_vec3(-3, -3, -3), rt_vec3(3, 3, 3), false, triangles);
     for (int i = 1; i < BOXES; i++) {
@@ -44,7 +53,7 @@ static uint32_t add_boxes(RtSolidSet *set, RtRandom *random) {
         }
         count += put_box(lo, hi, i % 2, triangles + count);
     }
-    return add_mesh(set, triangles, count);
+    return tree_of_mesh(forest, triangles, count);
 }
 
 /* Powers of two or 0, and a point at halves: all that the hit function computes about boxes is exact. */
@@ -59,16 +68,14 @@ static RtRay lattice_ray(RtRandom *random) {
     return ray;
 }
 
-/* Writes the roots to out[0..MOST); returns their number. */
-static uint32_t places_of(const RtSolidSet *set, uint32_t index, const RtRay *ray, long double *out) {
-    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
-    OWNED_MEMORY RtRational *places;
+/* Writes the places, which are doubles here, to out[0..MOST); returns their number. */
+static uint32_t places_of(const RtCsgForest *forest, const RtCsg *tree, const RtRay *ray, double *out) {
+    OWNED_MEMORY double *at;
     uint32_t count;
     RtWideRay wide = rt_wide_ray(ray);
-    RtExactLine line = rt_exact_line(&arena, &wide);
-    assert_ok(rt_exact_mesh_roots(&arena, set, index, &line, &places, &count, error));
+    assert_ok(rt_exact_csg_boundaries(forest, tree, &wide, 0, &at, &count, error));
     assert_true(count <= MOST && count % 2 == 0);
-    for (uint32_t i = 0; i < count; i++) out[i] = rt_exact_value(places[i]);
+    for (uint32_t i = 0; i < count; i++) out[i] = at[i];
     return count;
 }
 
@@ -76,16 +83,16 @@ RT_TEST(lines_at_vertices_edges_and_faces_are_decided_like_the_hit_function) {
     RtRandom random = rt_random(21, 0);
     int found = 0;
     for (int mesh = 0; mesh < 40; mesh++) {
-        OWNED_SOLIDS set = {0};
-        uint32_t index = add_boxes(&set, &random);
+        OWNED_FOREST forest = {0};
+        RtCsg tree = tree_of_boxes(&forest, &random);
         for (int i = 0; i < 200; i++) {
             RtRay ray = lattice_ray(&random);
-            long double exact[MOST];
-            List list = cross(&set, index, &ray);
-            uint32_t count = places_of(&set, index, &ray, exact);
+            double exact[MOST];
+            List list = cross(&forest.set, 0, &ray);
+            uint32_t count = places_of(&forest, &tree, &ray, exact);
             if (count != list.count)
                 fail_msg("mesh %d, ray %d: %u places, not %u", mesh, i, count, list.count);
-            for (uint32_t k = 0; k < count; k++) assert_true(exact[k] == (long double)list.at[k].t);
+            for (uint32_t k = 0; k < count; k++) assert_true(exact[k] == (double)list.at[k].t);
             found += (int)count;
         }
     }
@@ -102,15 +109,15 @@ RT_TEST(a_line_in_a_face_passes_beside_it_up_along_x_and_down_along_y) {
         bool inside;
     } lines[] = {{-1, 0, true},   {1, 0, false}, {0, -1, false}, {0, 1, true},
                  {-1, -1, false}, {-1, 1, true}, {1, -1, false}, {1, 1, false}};
-    OWNED_SOLIDS set = {0};
+    OWNED_FOREST forest = {0};
     RtTriangle triangles[12];
-    uint32_t index = add_mesh(&set, triangles, cube_mesh(triangles));
+    RtCsg tree = tree_of_mesh(&forest, triangles, cube_mesh(triangles));
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         for (int sign = -1; sign <= 1; sign += 2) {
-            long double exact[MOST];
+            double exact[MOST];
             float z = (float)sign;
             RtRay ray = make_ray(rt_vec3(lines[i].x, lines[i].y, -10 * z), rt_vec3(0, 0, z));
-            uint32_t count = places_of(&set, index, &ray, exact);
+            uint32_t count = places_of(&forest, &tree, &ray, exact);
             if (count != (lines[i].inside ? 2 : 0)) fail_msg("line %zu: %u places", i, count);
             if (count == 2) assert_true(exact[0] == 9 && exact[1] == 11);
         }
@@ -125,26 +132,26 @@ RT_TEST(a_mesh_that_overlaps_itself_is_inside_where_more_is_entered_than_left) {
         float lo, hi;
         bool turned;
     } slabs[] = {{0, 4, false}, {2, 6, false}, {1, 3, true}, {5, 7, true}};
-    OWNED_SOLIDS set = {0};
+    OWNED_FOREST forest = {0};
     RtTriangle triangles[48];
     uint32_t count = 0;
     for (int i = 0; i < 4; i++)
         count += put_box(rt_vec3(slabs[i].lo, -1, -1), rt_vec3(slabs[i].hi, 1, 1), slabs[i].turned,
                          triangles + count);
-    uint32_t index = add_mesh(&set, triangles, count);
+    RtCsg tree = tree_of_mesh(&forest, triangles, count);
     RtRay ray = make_ray(rt_vec3(-1, 0.25f, 0.5f), rt_vec3(1, 0, 0));
-    static const long double expected[4] = {1, 2, 3, 6};
-    long double exact[MOST];
-    assert_int_equal(places_of(&set, index, &ray, exact), 4);
+    static const double expected[4] = {1, 2, 3, 6};
+    double exact[MOST];
+    assert_int_equal(places_of(&forest, &tree, &ray, exact), 4);
     for (int i = 0; i < 4; i++) assert_true(exact[i] == expected[i]);
 }
 
 /* ---- inside or not ---- */
 
 /* Is the origin inside, by the number of places behind it? */
-static bool starts_inside(const RtSolidSet *set, uint32_t index, const RtRay *ray) {
-    long double exact[MOST];
-    uint32_t count = places_of(set, index, ray, exact), before = 0;
+static bool starts_inside(const RtCsgForest *forest, const RtCsg *tree, const RtRay *ray) {
+    double exact[MOST];
+    uint32_t count = places_of(forest, tree, ray, exact), before = 0;
     while (before < count && exact[before] < 0) before++;
     return before % 2;
 }
@@ -155,8 +162,8 @@ RT_TEST(all_lines_through_a_point_agree_whether_it_is_inside) {
     RtRandom random = rt_random(22, 0);
     int inside = 0, points = 0;
     for (int mesh = 0; mesh < 30; mesh++) {
-        OWNED_SOLIDS set = {0};
-        uint32_t index = add_boxes(&set, &random);
+        OWNED_FOREST forest = {0};
+        RtCsg tree = tree_of_boxes(&forest, &random);
         for (int i = 0; i < 40; i++, points++) {
             RtRay ray = {.tmax = INFINITY, .kind = RT_RAY_RANDOM};
             int ayes = 0;
@@ -167,7 +174,7 @@ RT_TEST(all_lines_through_a_point_agree_whether_it_is_inside) {
                     float target = 0.5f * (float)(rt_random_below(&random, 17)) - 4;
                     ray.dir.at[a] = target - ray.org.at[a];
                 }
-                ayes += starts_inside(&set, index, &ray);
+                ayes += starts_inside(&forest, &tree, &ray);
             }
             if (ayes != 0 && ayes != 5) fail_msg("mesh %d, point %d: %d of 5 lines", mesh, i, ayes);
             inside += ayes == 5;
@@ -197,7 +204,7 @@ RT_TEST(a_cube_without_the_mesh_of_a_cube_is_empty) {
     OWNED_BUILDER b = {0};
     RtTriangle triangles[12];
     uint32_t solid;
-    RtCsgTerm mesh = term_of(&b, add_mesh(&b.set, triangles, cube_mesh(triangles)));
+    RtCsgTerm mesh = add_mesh(&b, triangles, cube_mesh(triangles));
     assert_ok(rt_solid_add_box(&b.set, rt_vec3(-1, -1, -1), rt_vec3(1, 1, 1), &solid, error));
     RtCsgTerm box = term_of(&b, solid);
     assert_ok(rt_solid_add_ellipsoid(&b.set, rt_vec3(0, 0, 0), rt_vec3(2, 2, 0.5f), &solid, error));

@@ -135,16 +135,16 @@ RT_TEST(scale_makes_no_difference) {
 /* ---- needles ---- */
 
 /* How far org + t dir is from the plane of the triangle, which may be passed beside it. */
-static double off_plane(RtExactArena *arena, const RtVec3 v[3], const RtRay *ray, float t) {
-    RtExactVec a = rt_exact_vec(arena, rt_widen(v[0]));
-    RtExactVec b = rt_exact_vec_sub(arena, rt_exact_vec(arena, rt_widen(v[1])), a);
-    RtExactVec c = rt_exact_vec_sub(arena, rt_exact_vec(arena, rt_widen(v[2])), a);
-    RtExactVec normal = rt_exact_cross(arena, b, c), dir = rt_exact_vec(arena, rt_widen(ray->dir));
-    RtExactVec from = rt_exact_vec_sub(arena, rt_exact_vec(arena, rt_widen(ray->org)), a);
-    RtExactVec point = rt_exact_vec_add_scaled(arena, from, dir, rt_exact_of(arena, (double)t));
-    long double height = rt_exact_value(rt_exact_dot(arena, normal, point));
-    long double length = sqrtl(rt_exact_value(rt_exact_dot(arena, normal, normal)));
-    rt_exact_arena_rewind(arena, 0);
+static double off_plane(const RtVec3 v[3], const RtRay *ray, float t) {
+    RtExactVec a = rt_exact_vec(rt_widen(v[0]));
+    RtExactVec b = rt_exact_vec_sub(rt_exact_vec(rt_widen(v[1])), a);
+    RtExactVec c = rt_exact_vec_sub(rt_exact_vec(rt_widen(v[2])), a);
+    RtExactVec normal = rt_exact_cross(b, c), dir = rt_exact_vec(rt_widen(ray->dir));
+    RtExactVec from = rt_exact_vec_sub(rt_exact_vec(rt_widen(ray->org)), a);
+    RtExactVec point = rt_exact_vec_add_scaled(from, dir, rt_exact_of((double)t));
+    long double height = rt_exact_value(rt_exact_dot(normal, point));
+    long double length = sqrtl(rt_exact_value(rt_exact_dot(normal, normal)));
+    rt_exact_rewind(0);
     return (double)fabsl(height / length);
 }
 
@@ -152,7 +152,6 @@ static double off_plane(RtExactArena *arena, const RtVec3 v[3], const RtRay *ray
  * anywhere between its ends; but nothing is uncertain about where its plane is. */
 RT_TEST(t_of_a_needle_is_that_of_its_plane) {
     RtRandom random = rt_random(11, 0);
-    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
     int hits = 0;
     for (int i = 0; i < 20000; i++) {
         RtVec3 v[3];
@@ -169,7 +168,7 @@ RT_TEST(t_of_a_needle_is_that_of_its_plane) {
         float t;
         if (rt_object_hit(&g, 0, &prepared, &t, NULL)) {
             hits++;
-            double off = off_plane(&arena, v, &ray, t);
+            double off = off_plane(v, &ray, t);
             double most = 16 * 0x1p-4 * (double)rt_thickness(ray.org, &g.box);
             if (!(off <= most)) fail_msg("needle %d: t = %g is %g off its plane", i, (double)t, off);
         }

@@ -1,73 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The referee: exact numbers, hits at boundaries, true ties, and agreement with our hit functions except
+/* The referee: hits at boundaries, true ties, and agreement with our hit functions except
  * within the rounding of float32 of a decision boundary. */
 #include "testing.h"
 
 #include "exact/border.h"
 #include "exact/referee.h"
-
-/* ---- numbers ---- */
-
-static RtSurd surd(RtExactArena *arena, double p, double q, double d) {
-    return (RtSurd){rt_exact_of(arena, p), rt_exact_of(arena, q), rt_exact_of(arena, d)};
-}
-
-/* All p + q sqrt(d) of small numbers, by pairs: 240,100 of them, with many ties (sqrt(8) = 2 sqrt(2),
- * sqrt(9) = 3). Two that differ do so by more than the error of long double. */
-RT_TEST(surds_are_ordered_like_their_values_and_ties_are_found) {
-    enum { MOST = 7 * 7 * 10 };
-    static RtSurd all[MOST];
-    static long double values[MOST];
-    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
-    int count = 0, ties = 0;
-    for (int p = -3; p <= 3; p++) {
-        for (int q = -3; q <= 3; q++) {
-            for (int d = 0; d < 10; d++, count++) {
-                all[count] = surd(&arena, p, q, d);
-                values[count] = (long double)p + (long double)q * sqrtl((long double)d);
-                long double value = rt_surd_value(&arena, &all[count]);
-                assert_true(fabsl(value - values[count]) <= 0x1p-60L);
-                assert_true((rt_surd_sign(&arena, &all[count]) == 0) == (value == 0));
-            }
-        }
-    }
-    for (int a = 0; a < count; a++) {
-        for (int b = 0; b < count; b++) {
-            long double apart = values[a] - values[b];
-            int expected = apart > 1e-6L ? 1 : apart < -1e-6L ? -1 : 0;
-            if (rt_surd_compare(&arena, &all[a], &all[b]) != expected)
-                fail_msg("%Lg and %Lg", values[a], values[b]);
-            ties += a != b && expected == 0;
-        }
-    }
-    assert_true(ties > 1000);
-}
-
-/* With x^2 - 2 y^2 = 1 (Pell) x - y sqrt(2) is 1 / (x + y sqrt(2)): nearly all digits cancel. */
-RT_TEST(a_surd_that_cancels_keeps_all_its_digits) {
-    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
-    double x = 3, y = 2;
-    while (x < 0x1p50) {
-        RtSurd small = surd(&arena, x, -y, 2);
-        long double value = rt_surd_value(&arena, &small);
-        long double expected = 1 / ((long double)x + (long double)y * sqrtl(2));
-        assert_true(fabsl(value - expected) <= 0x1p-60L * expected);
-        assert_int_equal(rt_surd_sign(&arena, &small), 1);
-        double next = 3 * x + 4 * y;
-        y = 2 * x + 3 * y;
-        x = next;
-    }
-}
-
-RT_TEST(rationals_of_any_size_become_the_nearest_long_double) {
-    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
-    RtRational third = rt_exact_div(&arena, rt_exact_of(&arena, 1), rt_exact_of(&arena, -3));
-    assert_true(fabsl(rt_exact_value(third) + 1 / 3.0L) <= 0x1p-64L);
-    const double sizes[] = {0x1p-149, 0x1p-1074, 1, 0x1.fffffffffffffp1023};
-    for (int i = 0; i < 4; i++) assert_true(rt_exact_value(rt_exact_of(&arena, sizes[i])) == sizes[i]);
-    RtRational tiny = rt_exact_mul(&arena, rt_exact_of(&arena, 0x1p-1000), rt_exact_of(&arena, 0x1p-1000));
-    assert_true(rt_exact_value(tiny) == 0x1p-2000L);
-}
 
 /* ---- one object ---- */
 
