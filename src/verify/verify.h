@@ -19,7 +19,6 @@
 typedef struct RtVerifySpec {
     char spec[RT_MAX_SPEC_CHARS];
     bool named, judged;
-    RtAccelBuilder builder; /* how it is built; if zero, from the spec */
 } RtVerifySpec;
 
 #define RT_SHRINK_ALL UINT32_MAX

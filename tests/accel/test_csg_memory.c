@@ -153,8 +153,8 @@ static RtStatus build_item(const Row *row, RtError *error) {
 
 static RtStatus ask(const Row *row, RtError *error) {
     RtAnswer answer;
-    RtFailure failure = {.rays = row->rays, .count = RAYS, .stream = RAYS};
-    RT_TRY(rt_failure_ask(&failure, &row->scene, rt_accel_builder_of_spec("item+grid"), &answer, error));
+    RtFailure failure = {.spec = "item+grid", .rays = row->rays, .count = RAYS, .stream = RAYS};
+    RT_TRY(rt_failure_ask(&failure, &row->scene, &answer, error));
     assert_int_equal(answer.expected.object, 0);
     assert_false(answer.wrong);
     return RT_OK;

@@ -98,9 +98,10 @@ static RtAnswer ask_native(const char *scene_spec, const char *spec, RtRay ray) 
     RtScene scene;
     RtAnswer answer;
     RtError error;
-    RtFailure failure = {.rays = &ray, .count = 1, .stream = 1, .occluded = ray.kind == RT_RAY_OCCLUSION};
+    RtFailure failure = {.spec = spec, .rays = &ray, .count = 1, .stream = 1};
+    failure.occluded = ray.kind == RT_RAY_OCCLUSION;
     assert_int_equal(rt_scene_open(scene_spec, &scene, &error), RT_OK);
-    RtStatus status = rt_failure_ask(&failure, &scene, rt_accel_builder_of_spec(spec), &answer, &error);
+    RtStatus status = rt_failure_ask(&failure, &scene, &answer, &error);
     rt_scene_clear(&scene);
     if (status == RT_NOT_AVAILABLE) RT_SKIP(error.message);
     assert_int_equal(status, RT_OK);
