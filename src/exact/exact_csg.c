@@ -186,7 +186,7 @@ static RtStatus push_cone(Machine *m, const RtSolid *solid, RtError *error) {
     return cut_half(m, rt_exact_sub(z, top), dz, error);
 }
 
-/* Inside where (x^2 + y^2 + z^2 + 1 - ratio^2)^2 < 4 (x^2 + y^2): see shape/solid_torus.c. A torus that grows
+/* Inside where (x^2 + y^2 + z^2 + 1 - ratio^2)^2 < 4 (x^2 + y^2): see shape/solid_round.c. A torus that grows
  * over its own hole is replaced by a ball around it. */
 static RtStatus push_torus(Machine *m, const RtSolid *solid, RtError *error) {
     double minor = solid->ratio + growth_of(m, solid);

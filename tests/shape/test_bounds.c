@@ -233,7 +233,8 @@ RT_TEST(the_ball_of_a_polygon_of_many_vertices_is_that_of_its_circle) {
     for (int i = 0; i < MOST_POINTS; i++)
         circle[i] = rt_vec3((float)cos(i * 6.283185307179586 / MOST_POINTS),
                             (float)sin(i * 6.283185307179586 / MOST_POINTS), 0);
-    RtBall ball = rt_ball_of_points(circle, MOST_POINTS);
+    OWNED_OBJECT(g, polygon, circle, MOST_POINTS);
+    RtBall ball = rt_object_ball(&g, 0);
     assert_true(fabs(ball.radius - 1) < 1e-6 && rt_lengthd(ball.center) < 1e-6);
 }
 
@@ -285,9 +286,10 @@ static void add_octahedron(RtSolidSet *set, float far, uint32_t *solid) {
 RT_TEST(balls_are_larger_than_their_points_by_their_bound) {
     const float far = 125.0f / 64;
     const RtVec3 points[3] = {{{-far, 0, 0}}, {{far, 0, 0}}, {{0, 1, 0}}};
-    assert_larger(rt_ball_of_points(points, 3).radius, (double)far, 0x1p-50);
-    OWNED_OBJECT(g, cone, rt_vec3(0, 0, -100), 75, rt_vec3(0, 0, 100), 75);
-    assert_larger(rt_object_ball(&g, 0).radius, 125, 0x1p-50);
+    OWNED_OBJECT(triangle, triangle, points, NULL);
+    assert_larger(rt_object_ball(&triangle, 0).radius, (double)far, 0x1p-50);
+    OWNED_OBJECT(cone, cone, rt_vec3(0, 0, -100), 75, rt_vec3(0, 0, 100), 75);
+    assert_larger(rt_object_ball(&cone, 0).radius, 125, 0x1p-50);
     OWNED_SOLIDS set = {0};
     uint32_t mesh;
     add_octahedron(&set, far, &mesh);

@@ -145,8 +145,9 @@ typedef struct RtNormals {
 RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
                             RtCrossing *crossings);
 
-/* Extents of object `id` besides geometry->boxes[id]: a ball, and the support function, which is the
- * largest dot product with `direction` (for slabs and oriented boxes). */
+/* Extents of object `id`: its box, which geometry->boxes[id] is; a ball; and the support function, which is
+ * the largest dot product with `direction` (for slabs and oriented boxes). */
+RtBox rt_object_box(const RtGeometry *geometry, uint32_t id);
 RtBall rt_object_ball(const RtGeometry *geometry, uint32_t id);
 double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direction);
 

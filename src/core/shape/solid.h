@@ -29,7 +29,7 @@
 #include "core/base/ray.h"
 #include "core/base/status.h"
 #include "core/base/transform.h"
-#include "core/shape/ball.h"
+#include "core/shape/sphere.h"
 #include "core/shape/triangle.h"
 
 /* X(CONSTANT, name) */

@@ -33,7 +33,7 @@ RtStatus rt_solid_mesh_boxes(RtSolidSet *set, RtSolid *solid, RtError *error);
 /* Triangles per leaf. */
 #define RT_SOLID_LEAF 4
 
-/* In solid_cone.c: fits the transform of a cone to its caps, which lie in the set; caps across a world
+/* In solid_round.c: fits the transform of a cone to its caps, which lie in the set; caps across a world
  * axis are rounded to float32. The cone may become flat, which rt_solid_finish rejects. */
 void rt_solid_cone_to_caps(const RtSolidSet *set, RtSolid *solid);
 
@@ -44,10 +44,6 @@ RtStatus rt_solid_check_volume(const RtTriangle *triangles, uint32_t count, RtEr
 
 /* Rejects a transform that is not finite or that flattens. */
 RtStatus rt_solid_check_transform(const RtTransform *to_world, RtError *error);
-
-/* The transform whose z axis is `height` along `axis` and whose x and y axes are `radius` long, all
- * orthogonal. An axis along a world axis yields axes along world axes. */
-RtTransform rt_solid_transform_about(RtVec3d origin, RtVec3d axis, double radius, double height);
 
 /* The coordinate axis along which the vector lies, or -1. */
 static inline int rt_axis_of(RtVec3d v) {
