@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Meshes in exact arithmetic: lines through vertices and edges and in faces, meshes that overlap
  * themselves, and that all lines through a point agree whether it is inside. */
+#include "csg_testing.h"
 #include "solids_testing.h"
 
 #include "exact/referee.h"
@@ -26,18 +27,14 @@ static uint32_t put_box(RtVec3 lo, RtVec3 hi, bool turned, RtTriangle *out) {
 static RtCsgTerm add_mesh(RtCsgBuilder *b, const RtTriangle *triangles, uint32_t count) {
     RtTransform still = rt_transform_identity();
     uint32_t solid;
-    RtCsgTerm term;
     assert_ok(rt_solid_add_mesh(&b->set, triangles, count, &still, &solid, error));
-    assert_ok(rt_csg_solid(b, solid, 0, &term, error));
-    return term;
+    return term_of(b, solid);
 }
 
 /* The tree of a mesh alone, the first solid of `forest`. */
 static RtCsg tree_of_mesh(RtCsgForest *forest, const RtTriangle *triangles, uint32_t count) {
     OWNED_BUILDER b = {0};
-    RtCsg tree;
-    assert_ok(rt_csg_compile(forest, &b, add_mesh(&b, triangles, count), true, &tree, error));
-    return tree;
+    return compile(forest, &b, add_mesh(&b, triangles, count));
 }
 
 /* A large box and others at halves, some of them inside out, in one mesh: they overlap, touch, share faces
@@ -116,7 +113,7 @@ RT_TEST(a_line_in_a_face_passes_beside_it_up_along_x_and_down_along_y) {
         for (int sign = -1; sign <= 1; sign += 2) {
             double exact[MOST];
             float z = (float)sign;
-            RtRay ray = make_ray(rt_vec3(lines[i].x, lines[i].y, -10 * z), rt_vec3(0, 0, z));
+            RtRay ray = ray_along(rt_vec3(lines[i].x, lines[i].y, -10 * z), rt_vec3(0, 0, z));
             uint32_t count = places_of(&forest, &tree, &ray, exact);
             if (count != (lines[i].inside ? 2 : 0)) fail_msg("line %zu: %u places", i, count);
             if (count == 2) assert_true(exact[0] == 9 && exact[1] == 11);
@@ -139,7 +136,7 @@ RT_TEST(a_mesh_that_overlaps_itself_is_inside_where_more_is_entered_than_left) {
         count += put_box(rt_vec3(slabs[i].lo, -1, -1), rt_vec3(slabs[i].hi, 1, 1), slabs[i].turned,
                          triangles + count);
     RtCsg tree = tree_of_mesh(&forest, triangles, count);
-    RtRay ray = make_ray(rt_vec3(-1, 0.25f, 0.5f), rt_vec3(1, 0, 0));
+    RtRay ray = ray_along(rt_vec3(-1, 0.25f, 0.5f), rt_vec3(1, 0, 0));
     static const double expected[4] = {1, 2, 3, 6};
     double exact[MOST];
     assert_int_equal(places_of(&forest, &tree, &ray, exact), 4);
@@ -185,18 +182,6 @@ RT_TEST(all_lines_through_a_point_agree_whether_it_is_inside) {
 
 /* ---- in trees ---- */
 
-static RtCsgTerm term_of(RtCsgBuilder *b, uint32_t solid) {
-    RtCsgTerm term;
-    assert_ok(rt_csg_solid(b, solid, 0, &term, error));
-    return term;
-}
-
-static void add_difference(RtGeometry *g, RtCsgBuilder *b, RtCsgTerm left, RtCsgTerm right) {
-    RtCsgTerm root;
-    assert_ok(rt_csg_combine(b, RT_CSG_DIFFERENCE, left, right, &root, error));
-    assert_ok(rt_geometry_add_csg(g, b, root, true, error));
-}
-
 /* A cube as a mesh without the same cube as a box is nothing, and the other way round; lines through edges
  * and vertices included. A ball in the cube, taken away, is met behind the mesh's front. */
 RT_TEST(a_cube_without_the_mesh_of_a_cube_is_empty) {
@@ -205,13 +190,11 @@ RT_TEST(a_cube_without_the_mesh_of_a_cube_is_empty) {
     RtTriangle triangles[12];
     uint32_t solid;
     RtCsgTerm mesh = add_mesh(&b, triangles, cube_mesh(triangles));
-    assert_ok(rt_solid_add_box(&b.set, rt_vec3(-1, -1, -1), rt_vec3(1, 1, 1), &solid, error));
-    RtCsgTerm box = term_of(&b, solid);
+    RtCsgTerm same = box(&b, rt_vec3(-1, -1, -1), rt_vec3(1, 1, 1), 0);
     assert_ok(rt_solid_add_ellipsoid(&b.set, rt_vec3(0, 0, 0), rt_vec3(2, 2, 0.5f), &solid, error));
-    RtCsgTerm ball = term_of(&b, solid);
-    add_difference(&g, &b, mesh, box);
-    add_difference(&g, &b, box, mesh);
-    add_difference(&g, &b, mesh, ball);
+    add_tree(&g, &b, cut(&b, mesh, same));
+    add_tree(&g, &b, cut(&b, same, mesh));
+    add_tree(&g, &b, cut(&b, mesh, term_of(&b, solid)));
     assert_ok(rt_geometry_finish(&g, error));
     RtRandom random = rt_random(23, 0);
     for (int i = 0; i < 1000; i++) {

@@ -2,7 +2,7 @@
 /* The precision of our hit functions against exact arithmetic (exact/referee.h): rays of several cases are
  * aimed at random objects of one kind; the errors of t, and the decisions that differ. Prints a table and
  * checks that the rows of it in docs/precision.md are the same. */
-#include "crossings_testing.h"
+#include "csg_testing.h"
 #include "random_testing.h"
 #include "testing.h"
 
@@ -89,17 +89,11 @@ typedef struct Parts {
     float from_radius, to_radius;
 } Parts;
 
-static RtCsgTerm term_of(RtCsgBuilder *b, uint32_t solid) {
-    RtCsgTerm term;
-    assert_ok(rt_csg_solid(b, solid, 0, &term, error));
-    return term;
-}
-
-static void add_tree(RtGeometry *g, Subject subject, const Parts *p) {
+static void add_parts(RtGeometry *g, Subject subject, const Parts *p) {
     OWNED_BUILDER b = {0};
     RtTransform still = rt_transform_identity();
     uint32_t solid;
-    RtCsgTerm root, other;
+    RtCsgTerm root;
     if (subject == MESH) {
         RtTriangle triangles[8];
         for (int i = 0; i < 8; i++) {
@@ -114,17 +108,10 @@ static void add_tree(RtGeometry *g, Subject subject, const Parts *p) {
         assert_ok(rt_solid_add_ring(&b.set, p->center, p->axis, p->size, p->thick, &solid, error));
         root = term_of(&b, solid);
     } else {
-        const RtVec3 radii = rt_vec3(p->size, p->size, p->size);
-        assert_ok(rt_solid_add_ellipsoid(&b.set, p->center, radii, &solid, error));
-        root = term_of(&b, solid);
-        assert_ok(rt_solid_add_box(&b.set, p->lo, p->hi, &solid, error));
-        other = term_of(&b, solid);
-        assert_ok(rt_csg_combine(&b, RT_CSG_UNION, root, other, &root, error));
+        root = join(&b, ball(&b, p->center, p->size, 0), box(&b, p->lo, p->hi, 0));
     }
     assert_ok(rt_solid_add_frustum(&b.set, p->from, p->from_radius, p->to, p->to_radius, &solid, error));
-    other = term_of(&b, solid);
-    assert_ok(rt_csg_combine(&b, RT_CSG_DIFFERENCE, root, other, &root, error));
-    assert_ok(rt_geometry_add_csg(g, &b, root, true, error));
+    add_tree(g, &b, cut(&b, root, term_of(&b, solid)));
 }
 
 /* ---- random objects ---- */
@@ -169,7 +156,7 @@ static void add_random_tree(RtGeometry *g, Subject subject, RtRandom *random, fl
     p.hi = rt_add(p.lo, rt_vec3(p.size, p.size, p.thick));
     if (subject == MESH) make_tips(random, &p);
     if (subject == TORUS) p.axis = rt_narrow(rt_random_direction(random));
-    add_tree(g, subject, &p);
+    add_parts(g, subject, &p);
 }
 
 static void add_random_object(RtGeometry *g, Subject subject, RtRandom *random, float scale) {
@@ -305,7 +292,7 @@ static void add_lattice_tree(Lattice *lattice, RtGeometry *g, Subject subject, R
         aim(lattice, rt_add(center, rt_vec3(4, 0, 3))); /* where ball and box meet */
         aim(lattice, rt_add(center, rt_vec3(-3, 4, 0)));
     }
-    add_tree(g, subject, &p);
+    add_parts(g, subject, &p);
 }
 
 static void add_lattice_object(Lattice *lattice, RtGeometry *g, Subject subject, RtRandom *random) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The referee: hits at boundaries, true ties, and agreement with our hit functions except
  * within the rounding of float32 of a decision boundary. */
-#include "testing.h"
+#include "csg_testing.h"
 
 #include "exact/border.h"
 #include "exact/referee.h"
@@ -9,7 +9,7 @@
 /* ---- one object ---- */
 
 static RtRay ray_from(float x, float y, float z, float dx, float dy, float dz) {
-    return (RtRay){.org = {{x, y, z}}, .dir = {{dx, dy, dz}}, .tmax = INFINITY, .kind = RT_RAY_RANDOM};
+    return ray_along(rt_vec3(x, y, z), rt_vec3(dx, dy, dz));
 }
 
 /* t, INFINITY for a miss. */
@@ -186,45 +186,22 @@ RT_TEST(huge_and_denormal_numbers_are_as_exact_as_others) {
 
 /* ---- trees ---- */
 
-static RtCsgTerm solid_term(RtCsgBuilder *b, uint32_t solid) {
-    RtCsgTerm term;
-    assert_ok(rt_csg_solid(b, solid, 0, &term, error));
-    return term;
-}
-
-static RtCsgTerm ball_term(RtCsgBuilder *b, float x, float radius) {
-    uint32_t solid;
-    assert_ok(
-        rt_solid_add_ellipsoid(&b->set, rt_vec3(x, 0, 0), rt_vec3(radius, radius, radius), &solid, error));
-    return solid_term(b, solid);
-}
-
-static RtCsgTerm box_term(RtCsgBuilder *b, float x0, float x1) {
-    uint32_t solid;
-    assert_ok(rt_solid_add_box(&b->set, rt_vec3(x0, -1, -1), rt_vec3(x1, 1, 1), &solid, error));
-    return solid_term(b, solid);
-}
-
-static void add_tree(RtGeometry *g, RtCsgBuilder *b, RtCsgOp op, RtCsgTerm left, RtCsgTerm right) {
-    RtCsgTerm root;
-    assert_ok(rt_csg_combine(b, op, left, right, &root, error));
-    assert_ok(rt_geometry_add_csg(g, b, root, true, error));
-}
-
 RT_TEST(trees_are_met_where_their_inside_begins_and_ends) {
     OWNED_GEOMETRY g = {0};
     OWNED_BUILDER b = {0};
-    RtCsgTerm ball = ball_term(&b, 0, 5), touching = ball_term(&b, 10, 5), cube = box_term(&b, -1, 9);
-    RtCsgTerm wall = box_term(&b, 1, nextafterf(1, 2)), room = box_term(&b, 0, 3);
+    RtCsgTerm near = ball(&b, rt_vec3(0, 0, 0), 5, 0), touching = ball(&b, rt_vec3(10, 0, 0), 5, 0);
+    RtCsgTerm cube = box(&b, rt_vec3(-1, -1, -1), rt_vec3(9, 1, 1), 0);
+    RtCsgTerm wall = box(&b, rt_vec3(1, -1, -1), rt_vec3(nextafterf(1, 2), 1, 1), 0);
+    RtCsgTerm room = box(&b, rt_vec3(0, -1, -1), rt_vec3(3, 1, 1), 0);
     uint32_t solid;
     assert_ok(rt_solid_add_frustum(&b.set, rt_vec3(0, 0, 0), 5, rt_vec3(8, 0, 0), 0, &solid, error));
-    RtCsgTerm cone = solid_term(&b, solid);
-    add_tree(&g, &b, RT_CSG_UNION, ball, touching);    /* 0 */
-    add_tree(&g, &b, RT_CSG_DIFFERENCE, ball, cube);   /* 1 */
-    add_tree(&g, &b, RT_CSG_INTERSECTION, ball, cube); /* 2 */
-    add_tree(&g, &b, RT_CSG_DIFFERENCE, ball, ball);   /* 3 */
-    add_tree(&g, &b, RT_CSG_INTERSECTION, room, wall); /* 4: an ulp thick */
-    add_tree(&g, &b, RT_CSG_UNION, cone, cone);        /* 5 */
+    RtCsgTerm cone = term_of(&b, solid);
+    add_tree(&g, &b, join(&b, near, touching)); /* 0 */
+    add_tree(&g, &b, cut(&b, near, cube));      /* 1 */
+    add_tree(&g, &b, meet(&b, near, cube));     /* 2 */
+    add_tree(&g, &b, cut(&b, near, near));      /* 3 */
+    add_tree(&g, &b, meet(&b, room, wall));     /* 4: an ulp thick */
+    add_tree(&g, &b, join(&b, cone, cone));     /* 5 */
     assert_ok(rt_geometry_finish(&g, error));
     RtRay x = ray_from(-8, 0, 0, 1, 0, 0), within = x;
     within.tmin = 4;

@@ -8,10 +8,6 @@
 
 #include "core/shape/geometry.h"
 
-static inline RtRay make_ray(RtVec3 org, RtVec3 dir) {
-    return (RtRay){.org = org, .dir = dir, .tmin = 0, .tmax = INFINITY};
-}
-
 static inline bool hit(const RtGeometry *g, uint32_t id, const RtRay *ray, float *t) {
     RtPreparedRay prepared;
     rt_hit_ray(&prepared, g, ray, crossings_of_tests());

@@ -31,7 +31,7 @@ static RtRay random_ray(RtRandom *random) {
     RtVec3 target = rt_random_point(random, 1);
     RtVec3d dir = rt_random_direction(random);
     RtVec3d org = rt_add_scaledd(rt_widen(target), dir, -3 * (double)rt_random_unit(random));
-    return make_ray(rt_narrow(org), rt_narrow(dir));
+    return ray_along(rt_narrow(org), rt_narrow(dir));
 }
 
 enum { RAYS = 4000 };

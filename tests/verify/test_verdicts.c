@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Verdicts from both sides: careful arithmetic is never wrong, and what passes a border by four times delta
  * is always wrong. Scenes are large, small, flat, and far from the origin of coordinates. */
+#include "csg_testing.h"
 #include "equivalence_testing.h"
 
 #include "random_testing.h"
@@ -215,15 +216,10 @@ static void add_one_of_each_shape(RtGeometry *g, const Place *p, RtRandom *rando
                                    place(p, rt_vec3(1, 2, 1)), p->scale * 0.125f, error));
     OWNED_BUILDER builder = {0};
     uint32_t solid;
-    RtCsgTerm box, ball, tree;
     RtVec3 lo = place(p, rt_vec3(-1, -1, -1)), hi = place(p, rt_vec3(0.5f, 0.5f, 0.5f));
     RtVec3 radii = rt_vec3(p->scale, p->scale, p->scale * 0.5f);
-    assert_ok(rt_solid_add_box(&builder.set, lo, hi, &solid, error));
-    assert_ok(rt_csg_solid(&builder, solid, 0, &box, error));
     assert_ok(rt_solid_add_ellipsoid(&builder.set, hi, radii, &solid, error));
-    assert_ok(rt_csg_solid(&builder, solid, 0, &ball, error));
-    assert_ok(rt_csg_combine(&builder, RT_CSG_DIFFERENCE, box, ball, &tree, error));
-    assert_ok(rt_geometry_add_csg(g, &builder, tree, true, error));
+    add_tree(g, &builder, cut(&builder, box(&builder, lo, hi, 0), term_of(&builder, solid)));
     assert_ok(rt_geometry_finish(g, error));
 }
 
