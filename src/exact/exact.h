@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Exact numbers: rationals (GMP), vectors of them, the real roots of polynomials with rational coefficients,
- * and rays in such numbers. A float32 or double is a rational, so + - * / on such numbers are exact, and order
- * and sign are decided, never estimated.
+ * and rays in such numbers. A float32 or double is a rational, so + - * / on such numbers are exact, and
+ * order and sign are decided, never estimated.
  *
- * A root is represented by its polynomial, which has no multiple root, and an interval with rational ends that
- * contains this root alone; the interval can be narrowed as far as necessary. Real roots are isolated by
- * Sturm's theorem ("Memoire sur la resolution des equations numeriques", 1829): for the chain p, p', and minus
- * the remainder of each two before, the sign changes at x minus those at y are the number of roots between x
- * and y. Intervals are narrowed by signs at rational points alone, chosen by a secant (Abbott 2014, "Quadratic
- * Interval Refinement for Real Roots"). Two roots are equal if the greatest common divisor of their polynomials
- * has a root in both intervals; otherwise narrowing separates them. So nothing is estimated, and a tie is a
- * tie.
+ * A root is represented by its polynomial, which has no multiple root, and an interval with rational ends
+ * that contains this root alone; the interval can be narrowed as far as necessary. Real roots are isolated by
+ * Sturm's theorem ("Memoire sur la resolution des equations numeriques", 1829): for the chain p, p', and
+ * minus the remainder of each two before, the sign changes at x minus those at y are the number of roots
+ * between x and y. Intervals are narrowed by signs at rational points alone, chosen by a secant (Abbott 2014,
+ * "Quadratic Interval Refinement for Real Roots"). Two roots are equal if the greatest common divisor of
+ * their polynomials has a root in both intervals; otherwise narrowing separates them. So nothing is
+ * estimated, and a tie is a tie.
  *
  * Layout. Each thread has an arena, in which numbers are written one after another and never changed.
- * Rewinding it to a mark discards the later ones and reuses their memory. Memory is allocated by GMP (a number
- * of a ray takes a few hundred bytes), which ends the program with a message if it fails. */
+ * Rewinding it to a mark discards the later ones and reuses their memory. Memory is allocated by GMP (a
+ * number of a ray takes a few hundred bytes), which ends the program with a message if it fails. */
 #ifndef RT_EXACT_EXACT_H
 #define RT_EXACT_EXACT_H
 
@@ -107,8 +107,7 @@ RtWideRay rt_wide_ray(const RtRay *ray);
  * the earliest? */
 bool rt_line_may_meet(const RtWideRay *line, const RtBox *box, double *soonest);
 
-/* The relative widening of that test: far above the rounding of a few operations in double, and far too
- * small to admit many objects. */
+/* The relative widening of that test: far above the rounding of a few operations in double. */
 #define RT_LINE_SLACK 0x1p-40
 
 /* The same in the arena; tmax is at most FLT_MAX, since a hit at infinity does not count. */

@@ -6,8 +6,7 @@
  *              the plane, have no hits.
  *   polygon    the points of its plane that, projected along the axis dropped by the hit function
  *              (polygon.h), lie within or on the edges, by the even-odd rule. The plane goes through the mean
- *              of the vertices, perpendicular to Newell's normal, both exact; so it is defined even if the
- *              rounded vertices lie in no plane. If they do, the choice of the axis makes no difference.
+ *              of the vertices, perpendicular to Newell's normal, both exact.
  *   sphere     the points whose distance from the centre is the radius. A tangent touches it.
  *   cone       its side: the points at a height 0..h along the axis whose distance from it is the radius
  *              there, both circles and the tip included. A line along the side has no hits.
@@ -17,8 +16,8 @@
  *              edge of a mesh, or in the plane of a face, passes beside it, on the side that exact_csg.c
  *              defines.
  *
- * Edges, vertices, circles and the ends of the interval are included: all sets are closed. The own box of
- * an object plays no role. */
+ * Edges, vertices, circles and the ends of the interval are included. The own box of an object plays no
+ * role. */
 #ifndef RT_EXACT_EXACT_HIT_H
 #define RT_EXACT_EXACT_HIT_H
 

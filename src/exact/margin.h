@@ -7,8 +7,7 @@
  *   triangle, polygon   flat_margin.h
  *   sphere              radius +- delta
  *   cone                radius +- delta, perpendicular to its side, between heights moved by delta
- *   CSG tree            each solid by +- delta, a subtracted one by the opposite (exact_csg.c); delta from
- * the box of all its solids
+ *   CSG tree            each solid by +- delta of the box of all, a subtracted one by the opposite
  *
  * The line is outside the grown object, inside the shrunk one, or between; it meets the surface in the pieces
  * between. A piece from outside to inside or back holds a crossing for certain, another piece may hold one.
@@ -28,7 +27,6 @@ typedef struct RtMarginRay {
     RtUnitLine line;
     double first, last; /* the interval as distances */
     double extra; /* added to delta: the least float32 as a difference of t, and for absolute coordinates */
-
 } RtMarginRay;
 
 /* For a valid ray. */
@@ -45,8 +43,8 @@ typedef struct RtMargin {
 
 double rt_margin_delta(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id);
 
-/* The margin of object `id`; `asked` is a distance along the ray, or NAN. RT_NO_MEMORY if memory does not
- * suffice for the crossings of a CSG tree. */
+/* The margin of object `id`; `asked` is a distance along the ray, or NAN. RT_NO_MEMORY for a CSG tree alone.
+ */
 RtStatus rt_margin_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id, double asked,
                       RtMargin *margin, RtError *error);
 

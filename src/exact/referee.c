@@ -73,17 +73,6 @@ RtExactAnswer rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray) {
     return s.nearest;
 }
 
-RtExactResult rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray) {
-    Search s;
-    search_init(&s, geometry, ray);
-    for (uint32_t id = 0; id < geometry->object_count && s.nearest.result != RT_HIT; id++) {
-        double soonest;
-        if (rt_line_may_meet(&s.line, &geometry->boxes[id], &soonest)) consider(&s, id, soonest);
-    }
-    rt_exact_rewind(s.mark);
-    return s.nearest.result == RT_MISSED && s.open < HUGE_VAL ? RT_UNDECIDED : s.nearest.result;
-}
-
 /* ---- judging ---- */
 
 /* RT_HIT if the answer is right. */

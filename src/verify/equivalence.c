@@ -239,7 +239,7 @@ static RtStatus answer_chunk(RtQuery *query, const RtRay *rays, void *message, R
     return RT_OK;
 }
 
-RtJudge rt_judge_of(const RtAccel *accel) {
+static RtJudge judge_of(const RtAccel *accel) {
     return (RtJudge){&accel->scene->geometry, accel->absolute};
 }
 
@@ -247,7 +247,7 @@ RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expecte
                            RtVerdict *verdict, RtError *error) {
     *verdict = memcmp(&expected, &got, sizeof got) == 0 ? RT_EQUAL : RT_WRONG;
     if (*verdict == RT_EQUAL || query->accel->exact) return RT_OK;
-    return rt_verdict_nearest(rt_judge_of(query->accel), ray, expected, got, verdict, error);
+    return rt_verdict_nearest(judge_of(query->accel), ray, expected, got, verdict, error);
 }
 
 RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got,
@@ -255,7 +255,7 @@ RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expect
     bool blocked = expected.object != RT_NO_OBJECT;
     *verdict = blocked == got ? RT_EQUAL : RT_WRONG;
     if (*verdict == RT_EQUAL || query->accel->exact) return RT_OK;
-    return rt_verdict_occluded(rt_judge_of(query->accel), ray, blocked, got, verdict, error);
+    return rt_verdict_occluded(judge_of(query->accel), ray, blocked, got, verdict, error);
 }
 
 void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *wrong, size_t *first,
@@ -311,12 +311,12 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
     part->verdicts[worst]++;
     if (doubtful && !job->accel->exact) {
         RtSide side;
-        RT_TRY(rt_verdict_side(rt_judge_of(job->accel), ray, expected, *doubtful, &side, error));
+        RT_TRY(rt_verdict_side(judge_of(job->accel), ray, expected, *doubtful, &side, error));
         part->sides[side]++;
     }
     if (faulty && !job->accel->exact) {
         RtFault fault;
-        RT_TRY(rt_verdict_fault(rt_judge_of(job->accel), ray, *faulty, &fault, error));
+        RT_TRY(rt_verdict_fault(judge_of(job->accel), ray, *faulty, &fault, error));
         part->faults[fault]++;
     }
     part->occluded_wrong += occluded_wrong;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A replay file: a wrong answer with everything needed to repeat the query on any machine, as one JSON
- * document.
+/* A replay file: a wrong answer with everything needed to repeat the query, as one JSON document.
  *
  *   scene, fingerprint   the scene's name and rt_scene_fingerprint; "yaml" is the scene itself if it came
  *                        from a file and is not too large

@@ -223,18 +223,23 @@ RtStatus rt_geometry_add_triangle(RtGeometry *geometry, const RtVec3 vertices[3]
 
 /* ---- finishing and clearing ---- */
 
+/* X(array, count, capacity) for each growing array but those of the forest. */
+#define OF_SHAPE(CONSTANT, name, Type)                                                                       \
+    X(name##s, name##_count, name##_capacity)                                                                \
+    X(name##_ids, name##_count, name##_id_capacity)
+#define ARRAYS                                                                                               \
+    X(objects, object_count, object_capacity)                                                                \
+    RT_SHAPES(OF_SHAPE)                                                                                      \
+    X(polygon_vertices, polygon_vertex_count, polygon_vertex_capacity)                                       \
+    X(triangle_normals, triangle_count, triangle_normal_capacity)                                            \
+    X(vertex_normals, vertex_normal_count, vertex_normal_capacity)
+
 /* Scenes are kept for long, and accelerators need the memory. */
 static void trim_arrays(RtGeometry *g) {
-    rt_trim(&g->objects, g->object_count, &g->object_capacity, sizeof(RtRef));
-#define TRIM(CONSTANT, name, Type)                                                                           \
-    rt_trim(&g->name##s, g->name##_count, &g->name##_capacity, sizeof(Type));                                \
-    rt_trim(&g->name##_ids, g->name##_count, &g->name##_id_capacity, sizeof(uint32_t));
-    RT_SHAPES(TRIM)
-#undef TRIM
-    rt_trim(&g->polygon_vertices, g->polygon_vertex_count, &g->polygon_vertex_capacity, sizeof(RtVec3));
-    if (g->triangle_normals)
-        rt_trim(&g->triangle_normals, g->triangle_count, &g->triangle_normal_capacity, sizeof(uint32_t));
-    rt_trim(&g->vertex_normals, g->vertex_normal_count, &g->vertex_normal_capacity, sizeof(RtVertexNormals));
+#define X(array, count, capacity)                                                                            \
+    if (g->array) rt_trim(&g->array, g->count, &g->capacity, sizeof *g->array);
+    ARRAYS
+#undef X
 }
 
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error) {
@@ -251,34 +256,22 @@ RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error) {
     return RT_OK;
 }
 
-uint64_t rt_geometry_bytes(const RtGeometry *geometry) {
-    const RtGeometry *g = geometry;
-    uint64_t bytes = (uint64_t)g->object_capacity * sizeof *g->objects;
-#define ADD_BYTES(CONSTANT, name, Type)                                                                      \
-    bytes += (uint64_t)g->name##_capacity * sizeof(Type);                                                    \
-    bytes += (uint64_t)g->name##_id_capacity * sizeof(uint32_t);
-    RT_SHAPES(ADD_BYTES)
-#undef ADD_BYTES
-    bytes += (uint64_t)g->polygon_vertex_capacity * sizeof *g->polygon_vertices;
-    bytes += (uint64_t)g->triangle_normal_capacity * sizeof *g->triangle_normals;
-    bytes += (uint64_t)g->vertex_normal_capacity * sizeof *g->vertex_normals;
-    bytes += rt_csg_forest_bytes(&g->forest);
-    return bytes + (g->boxes ? (uint64_t)g->object_count * sizeof *g->boxes : 0);
+uint64_t rt_geometry_bytes(const RtGeometry *g) {
+    uint64_t bytes = rt_csg_forest_bytes(&g->forest);
+    if (g->boxes) bytes += (uint64_t)g->object_count * sizeof *g->boxes;
+#define X(array, count, capacity) bytes += (uint64_t)g->capacity * sizeof *g->array;
+    ARRAYS
+#undef X
+    return bytes;
 }
 
-void rt_geometry_clear(RtGeometry *geometry) {
-    rt_free(geometry->objects);
-#define FREE_ARRAYS(CONSTANT, name, Type)                                                                    \
-    rt_free(geometry->name##s);                                                                              \
-    rt_free(geometry->name##_ids);
-    RT_SHAPES(FREE_ARRAYS)
-#undef FREE_ARRAYS
-    rt_free(geometry->polygon_vertices);
-    rt_free(geometry->triangle_normals);
-    rt_free(geometry->vertex_normals);
-    rt_csg_forest_clear(&geometry->forest);
-    rt_free(geometry->boxes);
-    *geometry = (RtGeometry){0};
+void rt_geometry_clear(RtGeometry *g) {
+#define X(array, count, capacity) rt_free(g->array);
+    ARRAYS
+#undef X
+    rt_csg_forest_clear(&g->forest);
+    rt_free(g->boxes);
+    *g = (RtGeometry){0};
 }
 
 /* ---- scratch memory of hit functions ---- */

@@ -16,9 +16,8 @@ typedef struct RtOutline {
 
 RtOutline rt_object_outline(const RtGeometry *geometry, uint32_t id);
 
-/* False only if every point of the object's surface, as its hit function sees it, is more than `margin`
- * from `box` along some axis; a box strictly inside a sphere does not meet it. The test is nearly exact
- * except for cones and concave polygons (treated as convex), where it may return true nearby. To cover
+/* False only if every point of the object's surface, as its hit function sees it, is more than `margin` from
+ * `box` along some axis. Nearly exact except for cones and concave polygons (treated as convex). To cover
  * rounding, `margin` must be at least 2^-40 of the largest coordinate of scene and box. */
 bool rt_outline_meets_box(const RtOutline *outline, const RtBox *box, double margin);
 

@@ -3,9 +3,8 @@
  *
  * Hit by projection (the lecture's method): the ray meets the plane, and the point is tested in the
  * coordinate plane onto which the polygon projects best, by counting crossings of its edges. Edges and
- * vertices belong to the polygon, so a symmetric ray through the edge of a cube does not slip through; a ray
- * exactly through an oblique edge may, because the point is rounded. The plane is Newell's, through the
- * centroid, in double. Vertices lie in one array of the geometry. */
+ * vertices belong to the polygon; a ray exactly through an oblique edge may slip through all the same,
+ * because the point is rounded. The plane is Newell's, through the centroid, in double. */
 #ifndef RT_SHAPE_POLYGON_H
 #define RT_SHAPE_POLYGON_H
 
