@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* shape/: hits, normals and rejected input of every shape, against results known by hand. */
-#include "shape_testing.h"
+#include "crossings_testing.h"
+#include "testing.h"
 
 /* ---- hits ---- */
 
