@@ -11,7 +11,7 @@
 #include "exact/exact_hit.h"
 
 #include "core/base/memory.h"
-#include "exact/flat_margin.h"
+#include "exact/margin.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -388,17 +388,16 @@ RtExactResult rt_exact_csg_hit(const RtCsgForest *forest, const RtCsg *tree, con
 }
 
 RtStatus rt_exact_csg_boundaries(const RtCsgForest *forest, const RtCsg *tree, const RtWideRay *line,
-                                 double grow, double **at, uint32_t *count, RtError *error) {
+                                 double grow, RtArena *owner, double **at, uint32_t *count, RtError *error) {
     size_t mark = rt_exact_mark();
     RtExactLine exact = rt_exact_line(line);
     Machine machine = {.line = &exact, .grow = grow};
     RtStatus status = run(&machine, forest, tree, error);
-    *count = status == RT_OK ? machine.lists[0].count : 0;
-    *at = rt_alloc(*count, sizeof **at);
-    if (status == RT_OK && !*at)
-        status = rt_fail_memory(error, "boundaries of a CSG tree", *count * sizeof **at);
-    if (!*at) *count = 0;
-    for (uint32_t i = 0; i < *count; i++) (*at)[i] = (double)rt_root_value(&machine.roots[i], exact.zero);
+    *count = machine.lists[0].count;
+    *at = rt_arena_alloc(owner, *count, sizeof **at);
+    if (status == RT_OK) status = rt_arena_check(owner, "boundaries of a CSG tree", error);
+    for (uint32_t i = 0; i < *count && status == RT_OK; i++)
+        (*at)[i] = (double)rt_root_value(&machine.roots[i], exact.zero);
     rt_free(machine.roots);
     rt_exact_rewind(mark);
     return status;

@@ -21,6 +21,7 @@
 #ifndef RT_EXACT_EXACT_HIT_H
 #define RT_EXACT_EXACT_HIT_H
 
+#include "core/base/memory.h"
 #include "core/shape/geometry.h"
 #include "exact/exact.h"
 
@@ -37,9 +38,8 @@ RtExactResult rt_exact_csg_hit(const RtCsgForest *forest, const RtCsg *tree, con
                                RtRoot *t);
 
 /* Where the whole line enters and leaves a CSG tree whose solids have grown by `grow`, or shrunk if it is
- * below 0 (margin.h): a new array of t in ascending order; free it with rt_free. RT_NO_MEMORY without a
- * result. */
+ * below 0 (margin.h): t in ascending order, in the memory of `owner`. */
 RtStatus rt_exact_csg_boundaries(const RtCsgForest *forest, const RtCsg *tree, const RtWideRay *line,
-                                 double grow, double **at, uint32_t *count, RtError *error);
+                                 double grow, RtArena *owner, double **at, uint32_t *count, RtError *error);
 
 #endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/margin.h"
 
-#include "core/base/memory.h"
 #include "exact/exact_hit.h"
 
 RtMarginRay rt_margin_ray(const RtGeometry *geometry, const RtRay *ray, bool absolute) {
@@ -186,20 +185,17 @@ static void cone_margin(const Making *m, const RtCone *cone) {
 /* ---- CSG trees ---- */
 
 static RtStatus csg_margin(const Making *m, const RtGeometry *g, uint32_t index, RtError *error) {
-    double *at[2] = {NULL, NULL};
-    uint32_t count[2] = {0, 0};
-    RtStatus status = RT_OK;
-    for (int i = 0; i < 2 && status == RT_OK; i++)
-        status = rt_exact_csg_boundaries(&g->forest, &g->csgs[index], &m->ray->wide,
-                                         i == 0 ? m->delta : -m->delta, &at[i], &count[i], error);
+    RT_ARENA(memory);
+    Boundaries boundaries[2];
     for (int i = 0; i < 2; i++) {
-        for (uint32_t k = 0; k < count[i]; k++) at[i][k] *= m->ray->line.length;
+        double *at, grow = i == 0 ? m->delta : -m->delta;
+        RT_TRY(rt_exact_csg_boundaries(&g->forest, &g->csgs[index], &m->ray->wide, grow, &memory, &at,
+                                       &boundaries[i].count, error));
+        for (uint32_t k = 0; k < boundaries[i].count; k++) at[k] *= m->ray->line.length;
+        boundaries[i].at = at;
     }
-    if (status == RT_OK)
-        add_pieces(m, (Boundaries){at[0], count[0]}, (Boundaries){at[1], count[1]}, no_limits);
-    rt_free(at[0]);
-    rt_free(at[1]);
-    return status;
+    add_pieces(m, boundaries[0], boundaries[1], no_limits);
+    return RT_OK;
 }
 
 /* ---- all shapes ---- */

@@ -203,10 +203,11 @@ static RtRay lattice_ray(RtRandom *random) {
 
 /* Writes the places, which are doubles here, to out[0..MOST); returns their number. */
 static uint32_t places_of(const RtCsgForest *forest, const RtCsg *tree, const RtRay *ray, double *out) {
-    OWNED_MEMORY double *at;
+    RT_ARENA(memory);
+    double *at;
     uint32_t count;
     RtWideRay wide = rt_wide_ray(ray);
-    assert_ok(rt_exact_csg_boundaries(forest, tree, &wide, 0, &at, &count, error));
+    assert_ok(rt_exact_csg_boundaries(forest, tree, &wide, 0, &memory, &at, &count, error));
     assert_true(count <= MOST && count % 2 == 0);
     for (uint32_t i = 0; i < count; i++) out[i] = at[i];
     return count;

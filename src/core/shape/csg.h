@@ -144,6 +144,6 @@ RtCsgFacet rt_csg_facet(const RtCsgForest *forest, const RtCsg *tree, const RtPr
  * a difference as far as its left side. The support never exceeds that of the box, and equals it where
  * disjoint solids leave nothing. */
 double rt_csg_support(const RtCsgForest *forest, const RtCsg *tree, RtVec3d direction);
-RtBall rt_csg_ball(const RtCsgForest *forest, const RtCsg *tree); /* computed anew; tree->ball holds it */
+RtBall rt_csg_ball(const RtCsgForest *forest, const RtCsg *tree);
 
 #endif
