@@ -1,13 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scratch memory for tests that call hit functions directly, one thread at a time. */
+/* For tests that call hit functions directly, one thread at a time: scratch memory, rays, and hits. */
 #ifndef RT_TESTS_CROSSINGS_TESTING_H
 #define RT_TESTS_CROSSINGS_TESTING_H
 
-#include "core/shape/csg.h"
+#include "core/shape/geometry.h"
 
 static inline RtCrossing *crossings_of_tests(void) {
     static RtCrossing crossings[1 << 16];
     return crossings;
+}
+
+static inline RtRay ray_along(RtVec3 org, RtVec3 dir) {
+    return (RtRay){.org = org, .dir = dir, .tmax = INFINITY};
+}
+
+static inline bool hit(const RtGeometry *g, uint32_t id, const RtRay *ray, float *t) {
+    RtPreparedRay prepared;
+    rt_hit_ray(&prepared, g, ray, crossings_of_tests());
+    return rt_object_hit(g, id, &prepared, t, NULL);
 }
 
 #endif

@@ -6,6 +6,7 @@
 #include "crossings_testing.h"
 #include "testing.h"
 
+#include "core/shape/geometry.h"
 #include "rays/rayset.h"
 #include "scenes/random_tree.h"
 
@@ -68,6 +69,17 @@ static inline RtCsgTerm cut(RtCsgBuilder *b, RtCsgTerm left, RtCsgTerm right) {
     return combine(b, RT_CSG_DIFFERENCE, left, right);
 }
 
+/* A term for a solid just added. */
+static inline RtCsgTerm term_of(RtCsgBuilder *b, uint32_t solid) {
+    RtCsgTerm term;
+    assert_ok(rt_csg_solid(b, solid, 0, &term, error));
+    return term;
+}
+
+static inline void add_tree(RtGeometry *g, const RtCsgBuilder *b, RtCsgTerm root) {
+    assert_ok(rt_geometry_add_csg(g, b, root, true, error));
+}
+
 static inline RtCsgTerm box(RtCsgBuilder *builder, RtVec3 lo, RtVec3 hi, uint32_t material) {
     RtCsgTerm term;
     assert_ok(rt_add_box(builder, (RtBox){lo, hi}, material, &term, error));
@@ -109,7 +121,7 @@ static inline RtCsgTerm random_boxes(RtCsgBuilder *builder, RtRandom *random, ui
 
 /* Random chords; every other one from a point and towards a point of a grid of halves, so that it meets edges
  * and corners, runs along faces, and starts on them or inside. */
-static inline RtRay random_ray(RtRandom *random, uint32_t i) {
+static inline RtRay tree_ray(RtRandom *random, uint32_t i) {
     const RtBall around = {{0, 0, 0}, 9};
     if (i % 2) return rt_sphere_chord(&around, random);
     RtRay ray = {.tmax = INFINITY};
@@ -119,10 +131,6 @@ static inline RtRay random_ray(RtRandom *random, uint32_t i) {
     }
     if (ray.dir.x == 0 && ray.dir.y == 0 && ray.dir.z == 0) ray.dir.x = 1;
     return ray;
-}
-
-static inline RtRay ray_along(RtVec3 org, RtVec3 dir) {
-    return (RtRay){.org = org, .dir = dir, .tmax = INFINITY};
 }
 
 static inline void assert_hits(const RtCsgForest *forest, const RtCsg *tree, RtRay ray, uint32_t count,

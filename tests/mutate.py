@@ -355,8 +355,8 @@ def steps_for(subject):
     steps = [Step("tests", "test_accel", group) for group in groups] + counts_of(specs)
     if subject == "src/core/shape/":
         steps += [Step("tests", "test_shape", group) for group in
-                  "bounds csg csg_points csg_trees hits shape solid_cases solid_faces solids triangle".split()]
-        steps += [Step("tests", "test_exact", group) for group in "border referee exact_mesh exact_trees".split()]
+                  "bounds csg csg_points csg_trees hits shape solid_cases solid_faces solids".split()]
+        steps += [Step("tests", "test_exact", group) for group in "border referee exact_trees".split()]
         steps += [Step("tests", "test_scene", group) for group in ("csg_scene", "yaml_refusals")]
     else:
         steps += [Step("tests", "test_picture", group) for group in ("path", "structure")]

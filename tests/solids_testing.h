@@ -4,10 +4,9 @@
 #ifndef RT_TESTS_SOLIDS_TESTING_H
 #define RT_TESTS_SOLIDS_TESTING_H
 
+#include "crossings_testing.h"
 #include "random_testing.h"
 #include "testing.h"
-
-#include "core/shape/solid.h"
 
 #include <float.h>
 
@@ -24,10 +23,6 @@ typedef struct List {
     uint32_t count;
     float near, far;
 } List;
-
-static inline RtRay make_ray(RtVec3 org, RtVec3 dir) {
-    return (RtRay){.org = org, .dir = dir, .tmin = 0, .tmax = INFINITY};
-}
 
 /* The crossings as a tree would compute them, with the invariants of every list. */
 static inline List cross(const RtSolidSet *set, uint32_t index, const RtRay *ray) {
@@ -303,7 +298,7 @@ static inline RtRay random_ray(const Model *model, RtRandom *random, RtVec3d tar
     RtVec3 along = rt_narrow(rt_scaled(dir, (double)rt_random_between(random, 0.1f, 10)));
     double steps = distance / (rt_lengthd(rt_widen(along)) / rt_lengthd(dir));
     RtVec3d org = rt_add_scaledd(rt_transform_pointd(&model->place, target), rt_widen(along), -steps);
-    return make_ray(rt_narrow(org), along);
+    return ray_along(rt_narrow(org), along);
 }
 
 #endif

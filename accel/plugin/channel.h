@@ -17,7 +17,7 @@
 #define RT_ACCEL_PLUGIN_CHANNEL_H
 
 #include "accel/remote.h"
-#include "core/shape/ball.h"
+#include "core/shape/sphere.h"
 
 #include <stdatomic.h>
 

@@ -456,13 +456,12 @@ static RtStatus replay(const Options *o, bool *failed, RtError *error) {
     RtReplay file;
     RtStatus status = RT_OK;
     RT_TRY(rt_replay_load(&file, o->replay, error));
-    RtAccelBuilder maker = rt_accel_builder_of_spec(file.accel_spec);
-    maker.threads = o->work.rays.threads;
-    printf("%s on %s\n", file.accel_spec, file.scene_spec);
+    file.failure.threads = o->work.rays.threads;
+    printf("%s on %s\n", file.failure.spec, file.scene_spec);
     uint32_t asked = 0;
     for (int shrunk = 0; shrunk < 2 && status == RT_OK; shrunk++) {
         RtAnswer answer;
-        status = rt_replay_ask(&file, maker, shrunk, &answer, error);
+        status = rt_replay_ask(&file, shrunk, &answer, error);
         if (status == RT_OK) {
             print_answer(shrunk ? "reduced" : "scene", &file.failure, &answer);
             *failed |= answer.wrong;

@@ -1,63 +1,45 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Exact numbers: rationals (GMP), vectors of them, and surds p + q sqrt(d), the roots of quadratic equations.
- * A float32 or double is a rational, so + - * / on such numbers are exact, and order and sign are decided,
- * never estimated.
+/* Exact numbers: rationals (GMP), vectors of them, the real roots of polynomials with rational coefficients,
+ * and rays in such numbers. A float32 or double is a rational, so + - * / on such numbers are exact, and
+ * order and sign are decided, never estimated.
  *
- * The signs of sums of square roots are found by algebra alone. The sign of a + b sqrt(c), if both parts have
- * opposite signs, is that of a^2 - b^2 c. For (p + q sqrt(d)) + r sqrt(e) with parts of opposite signs it is
- * that of the difference of their squares, which has one root less. Nothing is approximated, so a tie is a
- * tie.
+ * A root is represented by its polynomial, which has no multiple root, and an interval with rational ends
+ * that contains this root alone; the interval can be narrowed as far as necessary. Real roots are isolated by
+ * Sturm's theorem ("Memoire sur la resolution des equations numeriques", 1829): for the chain p, p', and
+ * minus the remainder of each two before, the sign changes at x minus those at y are the number of roots
+ * between x and y. Intervals are narrowed by signs at rational points alone, chosen by a secant (Abbott 2014,
+ * "Quadratic Interval Refinement for Real Roots"). Two roots are equal if the greatest common divisor of
+ * their polynomials has a root in both intervals; otherwise narrowing separates them. So nothing is
+ * estimated, and a tie is a tie.
  *
- * Layout. Numbers are written to an arena one after another and never changed. Rewinding the arena to a
- * mark discards the later ones and reuses their memory. Memory is allocated by GMP (a number of a ray
- * takes a few hundred bytes), which ends the program with a message if it fails. */
+ * Layout. Each thread has an arena, in which numbers are written one after another and never changed.
+ * Rewinding it to a mark discards the later ones and reuses their memory. Memory is allocated by GMP (a
+ * number of a ray takes a few hundred bytes), which ends the program with a message if it fails. */
 #ifndef RT_EXACT_EXACT_H
 #define RT_EXACT_EXACT_H
 
-#include "core/base/vec.h"
+#include "core/base/box.h"
+#include "core/base/ray.h"
 
 #include <gmp.h>
 #include <stddef.h>
 
-/* A number in an arena. */
+/* A number in the arena. */
 typedef mpq_srcptr RtRational;
 
-/* A zeroed struct is empty. For one thread at a time. */
-typedef struct RtExactArena {
-    mpq_t **blocks; /* [block_count] of RT_EXACT_ARENA_BLOCK numbers each, all initialised */
-    size_t block_count, used;
-} RtExactArena;
-
-#define RT_EXACT_ARENA_BLOCK 64
-
-void rt_exact_arena_clear(RtExactArena *arena);
-
-static inline size_t rt_exact_arena_mark(const RtExactArena *arena) {
-    return arena->used;
-}
-
-/* Discards all numbers written after the mark. */
-static inline void rt_exact_arena_rewind(RtExactArena *arena, size_t mark) {
-    arena->used = mark;
-}
-
-/* A new number of the arena, to be written once. */
-mpq_ptr rt_exact_arena_number(RtExactArena *arena);
-
-/* The calling thread's own arena, which lives as long as the thread; it is used from its mark on. A nested
- * borrower continues behind the numbers of the outer one. Return it with that mark. */
-RtExactArena *rt_exact_arena_borrow(void);
-void rt_exact_arena_return(RtExactArena *arena, size_t mark);
+/* The place in the calling thread's arena; rewinding to it discards all numbers written since. */
+size_t rt_exact_mark(void);
+void rt_exact_rewind(size_t mark);
 
 /* ---- rationals ---- */
 
 /* A finite `x`. */
-RtRational rt_exact_of(RtExactArena *arena, double x);
-RtRational rt_exact_add(RtExactArena *arena, RtRational a, RtRational b);
-RtRational rt_exact_sub(RtExactArena *arena, RtRational a, RtRational b);
-RtRational rt_exact_mul(RtExactArena *arena, RtRational a, RtRational b);
-RtRational rt_exact_div(RtExactArena *arena, RtRational a, RtRational b); /* b is not 0 */
-RtRational rt_exact_neg(RtExactArena *arena, RtRational a);
+RtRational rt_exact_of(double x);
+RtRational rt_exact_add(RtRational a, RtRational b);
+RtRational rt_exact_sub(RtRational a, RtRational b);
+RtRational rt_exact_mul(RtRational a, RtRational b);
+RtRational rt_exact_div(RtRational a, RtRational b); /* b is not 0 */
+RtRational rt_exact_neg(RtRational a);
 
 /* -1, 0, 1 */
 static inline int rt_exact_sign(RtRational a) {
@@ -71,33 +53,73 @@ typedef struct RtExactVec {
     RtRational at[3];
 } RtExactVec;
 
-RtExactVec rt_exact_vec(RtExactArena *arena, RtVec3d v);
-RtExactVec rt_exact_vec_sub(RtExactArena *arena, RtExactVec a, RtExactVec b);
-RtExactVec rt_exact_vec_add_scaled(RtExactArena *arena, RtExactVec a, RtExactVec b, RtRational scale);
-RtRational rt_exact_dot(RtExactArena *arena, RtExactVec a, RtExactVec b);
-RtExactVec rt_exact_cross(RtExactArena *arena, RtExactVec a, RtExactVec b);
+RtExactVec rt_exact_vec(RtVec3d v);
+RtExactVec rt_exact_vec_sub(RtExactVec a, RtExactVec b);
+RtExactVec rt_exact_vec_add_scaled(RtExactVec a, RtExactVec b, RtRational scale);
+RtRational rt_exact_dot(RtExactVec a, RtExactVec b);
+RtExactVec rt_exact_cross(RtExactVec a, RtExactVec b);
 
-/* ---- surds ---- */
+/* ---- roots ---- */
 
-/* p + q sqrt(d), d >= 0 */
-typedef struct RtSurd {
-    RtRational p, q, d;
-} RtSurd;
+#define RT_MAX_DEGREE 4
 
-RtSurd rt_surd_of(RtExactArena *arena, RtRational p);
+/* The sum of at[i] t^i, i = 0..degree; at[degree] is not 0. The zero polynomial has degree -1. */
+typedef struct RtPolynomial {
+    int degree;
+    RtRational at[RT_MAX_DEGREE + 1];
+} RtPolynomial;
 
-/* a + b x */
-RtSurd rt_surd_line(RtExactArena *arena, RtRational a, RtRational b, const RtSurd *x);
+/* The sum of at[i] t^i, i = 0..degree; any coefficient may be 0. */
+RtPolynomial rt_polynomial(int degree, const RtRational *at);
 
-/* The sign (-1, 0, 1) of the number, and of a - b. Nothing stays in the arena. */
-int rt_surd_sign(RtExactArena *arena, const RtSurd *a);
-int rt_surd_compare(RtExactArena *arena, const RtSurd *a, const RtSurd *b);
+/* A rational number if lo == hi; otherwise a simple root of `of`, the only one with lo <= t <= hi, and lo and
+ * hi are no roots. */
+typedef struct RtRoot {
+    RtPolynomial of;
+    RtRational lo, hi;
+    bool crossed; /* the polynomial that was solved changes its sign here */
+} RtRoot;
 
-/* Like rt_exact_value, also under cancellation of p and q sqrt(d). */
-long double rt_surd_value(RtExactArena *arena, const RtSurd *a);
+RtRoot rt_root_of(RtRational t);
 
-/* The real roots of a t^2 + 2 b t + c in ascending order; returns their number. A double root appears
- * once; an equation that holds for no t or for every t has none. */
-int rt_exact_roots(RtExactArena *arena, RtRational a, RtRational half_b, RtRational c, RtSurd roots[2]);
+/* The real roots of p in ascending order; returns their number. A multiple root appears once; a constant has
+ * none. Intervals are no wider than 2^-64 of the bound on the roots. */
+int rt_polynomial_roots(const RtPolynomial *p, RtRoot roots[RT_MAX_DEGREE]);
+
+/* -1, 0, 1: the sign of a - b, and of a - t. Nothing stays in the arena. */
+int rt_root_compare(const RtRoot *a, const RtRoot *b);
+int rt_root_compare_rational(const RtRoot *a, RtRational t);
+
+/* root - from, with a relative error below 2^-62 however close they are; exactly 0 if equal. */
+long double rt_root_value(const RtRoot *root, RtRational from);
+
+/* ---- lines ---- */
+
+/* A ray whose origin need not be float32. */
+typedef struct RtWideRay {
+    RtVec3d org, dir;  /* finite; dir, rounded to float32, is not 0 */
+    double tmin, tmax; /* tmin finite */
+} RtWideRay;
+
+RtWideRay rt_wide_ray(const RtRay *ray);
+
+/* Conservative test in double: may the line meet something in `box` within [tmin, tmax], and at which t at
+ * the earliest? */
+bool rt_line_may_meet(const RtWideRay *line, const RtBox *box, double *soonest);
+
+/* The relative widening of that test: far above the rounding of a few operations in double. */
+#define RT_LINE_SLACK 0x1p-40
+
+/* The same in the arena; tmax is at most FLT_MAX, since a hit at infinity does not count. */
+typedef struct RtExactLine {
+    RtWideRay wide;
+    RtExactVec org, dir;
+    RtRational zero, tmin, tmax;
+} RtExactLine;
+
+RtExactLine rt_exact_line(const RtWideRay *line);
+
+/* Is t within [tmin, tmax]? */
+bool rt_exact_counts(const RtExactLine *line, const RtRoot *t);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "exact/flat_margin.h"
+#include "exact/margin.h"
 
 RtUnitLine rt_unit_line(const RtWideRay *ray) {
     double length = rt_lengthd(ray->dir);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/margin.h"
 
-#include "core/base/memory.h"
 #include "exact/exact_hit.h"
 
 RtMarginRay rt_margin_ray(const RtGeometry *geometry, const RtRay *ray, bool absolute) {
@@ -31,10 +30,19 @@ double rt_margin_delta(const RtMarginRay *ray, const RtGeometry *geometry, uint3
 
 /* ---- pieces of the line ---- */
 
+/* A margin that is being made. */
+typedef struct Making {
+    RtMargin *margin;
+    const RtMarginRay *ray;
+    double delta, asked;
+} Making;
+
 /* Adds a piece between the grown and the shrunk object; `crossed` if a crossing in it is certain. Pieces come
  * in ascending order. */
-static void add_piece(RtMargin *m, const RtMarginRay *ray, double lo, double hi, bool crossed, double delta,
-                      double asked) {
+static void add_piece(const Making *making, double lo, double hi, bool crossed) {
+    RtMargin *m = making->margin;
+    const RtMarginRay *ray = making->ray;
+    const double delta = making->delta, asked = making->asked;
     lo = fmax(lo, ray->first - delta);
     hi = fmin(hi, ray->last + delta);
     if (m->certain || !(lo <= hi)) return;
@@ -63,8 +71,7 @@ typedef struct Limits {
 static const Limits no_limits = {-HUGE_VAL, HUGE_VAL, -HUGE_VAL, HUGE_VAL};
 
 /* Adds the pieces of the line that are inside the grown object and outside the shrunk one. */
-static void add_pieces(RtMargin *m, const RtMarginRay *ray, Boundaries grown, Boundaries shrunk,
-                       Limits limits, double delta, double asked) {
+static void add_pieces(const Making *m, Boundaries grown, Boundaries shrunk, Limits limits) {
     uint32_t g = 0, s = 0;
     bool began_inside = false; /* the shrunk object lies before the piece */
     double begin = 0;
@@ -80,8 +87,7 @@ static void add_pieces(RtMargin *m, const RtMarginRay *ray, Boundaries grown, Bo
             bool ends_inside = s % 2 == 1;
             bool crossed =
                 began_inside != ends_inside && begin >= limits.certain_lo && at <= limits.certain_hi;
-            add_piece(m, ray, fmax(begin, limits.possible_lo), fmin(at, limits.possible_hi), crossed, delta,
-                      asked);
+            add_piece(m, fmax(begin, limits.possible_lo), fmin(at, limits.possible_hi), crossed);
         }
         began_inside = !next_grown;
         begin = at;
@@ -100,14 +106,14 @@ static Boundaries chord(double closest, double square, double radius, double at[
     return (Boundaries){at, 2};
 }
 
-static void sphere_margin(RtMargin *m, const RtMarginRay *ray, const RtSphere *sphere, double delta,
-                          double asked) {
-    RtVec3d org = rt_subd(ray->line.org, rt_widen(sphere->center));
-    double closest = -rt_dotd(org, ray->line.dir), radius = (double)sphere->radius;
-    RtVec3d across = rt_add_scaledd(org, ray->line.dir, closest);
+static void sphere_margin(const Making *m, const RtSphere *sphere) {
+    const RtUnitLine *line = &m->ray->line;
+    RtVec3d org = rt_subd(line->org, rt_widen(sphere->center));
+    double closest = -rt_dotd(org, line->dir), radius = (double)sphere->radius;
+    RtVec3d across = rt_add_scaledd(org, line->dir, closest);
     double square = rt_dotd(across, across), at[2][2];
-    add_pieces(m, ray, chord(closest, square, radius + delta, at[0]),
-               chord(closest, square, radius - delta, at[1]), no_limits, delta, asked);
+    add_pieces(m, chord(closest, square, radius + m->delta, at[0]),
+               chord(closest, square, radius - m->delta, at[1]), no_limits);
 }
 
 /* ---- cones ---- */
@@ -141,17 +147,19 @@ static Boundaries cone_chord(const double square[2], Linear height, Linear radiu
     return (Boundaries){at, 2};
 }
 
-static void cone_margin(RtMargin *m, const RtMarginRay *ray, const RtCone *cone, double delta, double asked) {
+static void cone_margin(const Making *m, const RtCone *cone) {
+    const RtUnitLine *line = &m->ray->line;
+    const double delta = m->delta;
     RtVec3d base = rt_widen(cone->base), axis = rt_subd(rt_widen(cone->apex), base);
     double length = rt_lengthd(axis),
            slope = ((double)cone->apex_radius - (double)cone->base_radius) / length;
     axis = rt_scaled(axis, 1 / length);
     /* Distances from the place nearest to the cone's middle, for the sake of digits. */
     RtVec3d middle = rt_add_scaledd(base, axis, length / 2);
-    double shift = rt_dotd(rt_subd(middle, ray->line.org), ray->line.dir), at[2][2];
-    RtVec3d from = rt_subd(rt_add_scaledd(ray->line.org, ray->line.dir, shift), base);
-    const double square[2] = {rt_dotd(from, from), rt_dotd(from, ray->line.dir)};
-    const Linear height = {rt_dotd(from, axis), rt_dotd(ray->line.dir, axis)};
+    double shift = rt_dotd(rt_subd(middle, line->org), line->dir), at[2][2];
+    RtVec3d from = rt_subd(rt_add_scaledd(line->org, line->dir, shift), base);
+    const double square[2] = {rt_dotd(from, from), rt_dotd(from, line->dir)};
+    const Linear height = {rt_dotd(from, axis), rt_dotd(line->dir, axis)};
     Boundaries boundaries[2];
     for (int i = 0; i < 2; i++) {
         double grow = (i == 0 ? delta : -delta) * sqrt(1 + slope * slope);
@@ -171,37 +179,31 @@ static void cone_margin(RtMargin *m, const RtMarginRay *ray, const RtCone *cone,
         limits.certain_lo = shift + (near + sign * delta) / height.rate;
         limits.certain_hi = shift + (far - sign * delta) / height.rate;
     }
-    add_pieces(m, ray, boundaries[0], boundaries[1], limits, delta, asked);
+    add_pieces(m, boundaries[0], boundaries[1], limits);
 }
 
 /* ---- CSG trees ---- */
 
-static RtStatus csg_margin(RtMargin *m, const RtMarginRay *ray, const RtGeometry *g, uint32_t index,
-                           double delta, double asked, RtError *error) {
-    double *at[2] = {NULL, NULL};
-    uint32_t count[2] = {0, 0};
-    RtStatus status = RT_OK;
-    for (int i = 0; i < 2 && status == RT_OK; i++)
-        status = rt_exact_csg_boundaries(&g->forest, &g->csgs[index], &ray->wide, i == 0 ? delta : -delta,
-                                         &at[i], &count[i], error);
+static RtStatus csg_margin(const Making *m, const RtGeometry *g, uint32_t index, RtError *error) {
+    RT_ARENA(memory);
+    Boundaries boundaries[2];
     for (int i = 0; i < 2; i++) {
-        for (uint32_t k = 0; k < count[i]; k++) at[i][k] *= ray->line.length;
+        double *at, grow = i == 0 ? m->delta : -m->delta;
+        RT_TRY(rt_exact_csg_boundaries(&g->forest, &g->csgs[index], &m->ray->wide, grow, &memory, &at,
+                                       &boundaries[i].count, error));
+        for (uint32_t k = 0; k < boundaries[i].count; k++) at[k] *= m->ray->line.length;
+        boundaries[i].at = at;
     }
-    if (status == RT_OK)
-        add_pieces(m, ray, (Boundaries){at[0], count[0]}, (Boundaries){at[1], count[1]}, no_limits, delta,
-                   asked);
-    rt_free(at[0]);
-    rt_free(at[1]);
-    return status;
+    add_pieces(m, boundaries[0], boundaries[1], no_limits);
+    return RT_OK;
 }
 
 /* ---- all shapes ---- */
 
-static void flat_margin(RtMargin *m, const RtMarginRay *ray, const RtVec3 *vertices, uint32_t count,
-                        const RtBox *box, double delta, double asked) {
-    RtFlatMargin flat = rt_flat_margin(&ray->line, vertices, count, box, delta);
-    if (flat.possible) add_piece(m, ray, flat.lo, flat.hi, flat.certain, delta, asked);
-    m->edge_on = flat.edge_on;
+static void flat_margin(const Making *m, const RtVec3 *vertices, uint32_t count, const RtBox *box) {
+    RtFlatMargin flat = rt_flat_margin(&m->ray->line, vertices, count, box, m->delta);
+    if (flat.possible) add_piece(m, flat.lo, flat.hi, flat.certain);
+    m->margin->edge_on = flat.edge_on;
 }
 
 RtStatus rt_margin_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id, double asked,
@@ -209,6 +211,7 @@ RtStatus rt_margin_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32
     uint32_t index = rt_ref_index(geometry->objects[id]);
     const RtBox *box = &geometry->boxes[id];
     double delta = rt_margin_delta(ray, geometry, id), far = delta / RT_MARGIN, length = ray->line.length;
+    const Making making = {m, ray, delta, asked};
     double lo, hi;
     *m = (RtMargin){.earliest = HUGE_VAL};
     if (!rt_line_in_box(&ray->line, box, delta, &lo, &hi) || hi < ray->first - delta ||
@@ -218,18 +221,17 @@ RtStatus rt_margin_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32
     const bool flat = shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON;
     if (!flat &&
         rt_exceeds_float(fmin(far, length) * fmin(far, length), fmax(far, length) * fmax(far, length))) {
-        add_piece(m, ray, -HUGE_VAL, HUGE_VAL, false, delta, asked);
+        add_piece(&making, -HUGE_VAL, HUGE_VAL, false);
         return RT_OK;
     }
     switch (shape) {
-    case RT_SHAPE_TRIANGLE: flat_margin(m, ray, geometry->triangles[index].v, 3, box, delta, asked); break;
+    case RT_SHAPE_TRIANGLE: flat_margin(&making, geometry->triangles[index].v, 3, box); break;
     case RT_SHAPE_POLYGON:
-        flat_margin(m, ray, rt_polygon_vertices(geometry, index), geometry->polygons[index].count, box, delta,
-                    asked);
+        flat_margin(&making, rt_polygon_vertices(geometry, index), geometry->polygons[index].count, box);
         break;
-    case RT_SHAPE_SPHERE: sphere_margin(m, ray, &geometry->spheres[index], delta, asked); break;
-    case RT_SHAPE_CONE: cone_margin(m, ray, &geometry->cones[index], delta, asked); break;
-    case RT_SHAPE_CSG: return csg_margin(m, ray, geometry, index, delta, asked, error);
+    case RT_SHAPE_SPHERE: sphere_margin(&making, &geometry->spheres[index]); break;
+    case RT_SHAPE_CONE: cone_margin(&making, &geometry->cones[index]); break;
+    case RT_SHAPE_CSG: return csg_margin(&making, geometry, index, error);
     case RT_SHAPE_COUNT: break;
     }
     return RT_OK;

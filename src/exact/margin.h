@@ -1,14 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Margins: which answers to a ray may be explained by rounding? They depend on the ray and the objects alone.
+ * Places along a line are distances from its origin; all arithmetic is double, whose own error is 2^-30 of
+ * any bound here.
  *
- * The arithmetic in question subtracts the ray's origin first, and errs by up to delta (flat_margin.h). An
- * object is possible if the ray meets it grown by delta, and certain if it meets it shrunk by delta as well:
+ * The arithmetic in question subtracts the ray's origin from float32 coordinates, and then works in float32.
+ * Its error for an object moves each vertex by up to
  *
- *   triangle, polygon   flat_margin.h
+ *     delta = 2^-20 * the distance from the origin to the far corner of the object's box      (16 half-ulps)
+ *
+ * An object is possible if the ray meets it grown by delta, and certain if it meets it shrunk by delta as
+ * well:
+ *
+ *   triangle, polygon   below
  *   sphere              radius +- delta
  *   cone                radius +- delta, perpendicular to its side, between heights moved by delta
- *   CSG tree            each solid by +- delta, a subtracted one by the opposite (exact_csg.c); delta from
- * the box of all its solids
+ *   CSG tree            each solid by +- delta of the box of all, a subtracted one by the opposite
  *
  * The line is outside the grown object, inside the shrunk one, or between; it meets the surface in the pieces
  * between. A piece from outside to inside or back holds a crossing for certain, another piece may hold one.
@@ -20,7 +26,49 @@
 #define RT_EXACT_MARGIN_H
 
 #include "core/shape/geometry.h"
-#include "exact/flat_margin.h"
+#include "exact/exact.h"
+
+/* ---- flat shapes: flat_margin.c ----
+ *
+ * An edge function is a triple product of a vertex, an edge and the direction; it decides correctly if the
+ * line passes the edge, as seen along the line, by delta, and by delta * longest / edge where the edge is a
+ * difference of longer ones. The plane of a shape with longest side L and area A moves by delta * L^2 / 2A
+ * within the shape, at least by delta. In the plane both distances are divided by the cosine between line and
+ * normal. Vertices of a polygon that are not in its plane add their distance from it. */
+
+/* The factor of delta. */
+#define RT_MARGIN 0x1p-20
+
+/* A line with a direction of length 1; the distance is t * length. */
+typedef struct RtUnitLine {
+    RtVec3d org, dir;
+    double length;
+} RtUnitLine;
+
+RtUnitLine rt_unit_line(const RtWideRay *ray);
+
+/* The distance of the origin from the far corner of the box. */
+double rt_far_corner(const RtUnitLine *line, const RtBox *box);
+
+/* Does the line pass through the box grown by delta, and between which distances? */
+bool rt_line_in_box(const RtUnitLine *line, const RtBox *box, double delta, double *lo, double *hi);
+
+/* Do products of these magnitudes overflow float32, or lose digits at its lower end? Then a hit may be
+ * reported anywhere. */
+bool rt_exceeds_float(double least, double most);
+
+typedef struct RtFlatMargin {
+    bool possible; /* the line may meet the shape: then between lo and hi */
+    bool certain;  /* it must */
+    bool edge_on;  /* seen so nearly edge on that float32 does not resolve the plane: anywhere in the box */
+    double lo, hi;
+} RtFlatMargin;
+
+/* For a shape with vertices[0..count), count >= 3, and that box. */
+RtFlatMargin rt_flat_margin(const RtUnitLine *line, const RtVec3 *vertices, uint32_t count, const RtBox *box,
+                            double delta);
+
+/* ---- all objects ---- */
 
 /* A ray as margins need it. */
 typedef struct RtMarginRay {
@@ -28,7 +76,6 @@ typedef struct RtMarginRay {
     RtUnitLine line;
     double first, last; /* the interval as distances */
     double extra; /* added to delta: the least float32 as a difference of t, and for absolute coordinates */
-
 } RtMarginRay;
 
 /* For a valid ray. */
@@ -45,8 +92,8 @@ typedef struct RtMargin {
 
 double rt_margin_delta(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id);
 
-/* The margin of object `id`; `asked` is a distance along the ray, or NAN. RT_NO_MEMORY if memory does not
- * suffice for the crossings of a CSG tree. */
+/* The margin of object `id`; `asked` is a distance along the ray, or NAN. RT_NO_MEMORY for a CSG tree alone.
+ */
 RtStatus rt_margin_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id, double asked,
                       RtMargin *margin, RtError *error);
 

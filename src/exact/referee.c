@@ -19,8 +19,7 @@ long double rt_float_ulp(long double x) {
 /* ---- the nearest ---- */
 
 typedef struct Search {
-    RtExactArena *arena; /* the thread's arena, used from `mark` on */
-    size_t mark;
+    size_t mark; /* of the before the search */
     const RtGeometry *geometry;
     RtWideRay line;
     RtExactLine exact;
@@ -30,31 +29,30 @@ typedef struct Search {
 } Search;
 
 static void search_init(Search *s, const RtGeometry *geometry, const RtRay *ray) {
-    *s = (Search){.arena = rt_exact_arena_borrow(),
+    *s = (Search){.mark = rt_exact_mark(),
                   .geometry = geometry,
                   .line = rt_wide_ray(ray),
                   .nearest = {.result = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL},
                   .open = HUGE_VAL};
-    s->mark = rt_exact_arena_mark(s->arena);
-    s->exact = rt_exact_line(s->arena, &s->line);
+    s->exact = rt_exact_line(&s->line);
 }
 
 /* Numbers of objects that are not the nearest are discarded at once. */
 static void consider(Search *s, uint32_t id, double soonest) {
-    size_t mark = rt_exact_arena_mark(s->arena);
+    size_t mark = rt_exact_mark();
     RtRoot t;
-    RtExactResult result = rt_exact_hit(s->arena, s->geometry, id, &s->exact, &t);
+    RtExactResult result = rt_exact_hit(s->geometry, id, &s->exact, &t);
     if (result == RT_UNDECIDED) s->open = fmin(s->open, soonest);
     int order = -1;
-    if (result == RT_HIT && s->nearest.tied > 0) order = rt_root_compare(s->arena, &t, &s->best);
+    if (result == RT_HIT && s->nearest.tied > 0) order = rt_root_compare(&t, &s->best);
     if (result != RT_HIT || order >= 0) {
         if (result == RT_HIT && order == 0) s->nearest.tied++;
-        rt_exact_arena_rewind(s->arena, mark);
+        rt_exact_rewind(mark);
         return;
     }
     s->best = t;
-    s->nearest = (RtExactAnswer){
-        .result = RT_HIT, .object = id, .tied = 1, .t = rt_root_value(s->arena, &t, s->exact.zero)};
+    s->nearest =
+        (RtExactAnswer){.result = RT_HIT, .object = id, .tied = 1, .t = rt_root_value(&t, s->exact.zero)};
 }
 
 static void search(Search *s) {
@@ -71,19 +69,8 @@ RtExactAnswer rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray) {
     Search s;
     search_init(&s, geometry, ray);
     search(&s);
-    rt_exact_arena_return(s.arena, s.mark);
+    rt_exact_rewind(s.mark);
     return s.nearest;
-}
-
-RtExactResult rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray) {
-    Search s;
-    search_init(&s, geometry, ray);
-    for (uint32_t id = 0; id < geometry->object_count && s.nearest.result != RT_HIT; id++) {
-        double soonest;
-        if (rt_line_may_meet(&s.line, &geometry->boxes[id], &soonest)) consider(&s, id, soonest);
-    }
-    rt_exact_arena_return(s.arena, s.mark);
-    return s.nearest.result == RT_MISSED && s.open < HUGE_VAL ? RT_UNDECIDED : s.nearest.result;
 }
 
 /* ---- judging ---- */
@@ -118,30 +105,28 @@ RtExactAnswer rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtH
 /* ---- one or two objects ---- */
 
 RtExactResult rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line, long double *t) {
-    RtExactArena *arena = rt_exact_arena_borrow();
-    size_t mark = rt_exact_arena_mark(arena);
-    RtExactLine exact = rt_exact_line(arena, line);
+    size_t mark = rt_exact_mark();
+    RtExactLine exact = rt_exact_line(line);
     RtRoot at;
-    RtExactResult result = rt_exact_hit(arena, geometry, id, &exact, &at);
-    if (result == RT_HIT) *t = rt_root_value(arena, &at, exact.zero);
-    rt_exact_arena_return(arena, mark);
+    RtExactResult result = rt_exact_hit(geometry, id, &exact, &at);
+    if (result == RT_HIT) *t = rt_root_value(&at, exact.zero);
+    rt_exact_rewind(mark);
     return result;
 }
 
 RtExactResult rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, const RtRay *ray,
                                int *order, long double *apart) {
-    RtExactArena *arena = rt_exact_arena_borrow();
-    size_t mark = rt_exact_arena_mark(arena);
+    size_t mark = rt_exact_mark();
     RtWideRay line = rt_wide_ray(ray);
-    RtExactLine exact = rt_exact_line(arena, &line);
+    RtExactLine exact = rt_exact_line(&line);
     RtRoot at[2];
-    RtExactResult result = rt_exact_hit(arena, geometry, a, &exact, &at[0]);
-    if (result == RT_HIT) result = rt_exact_hit(arena, geometry, b, &exact, &at[1]);
+    RtExactResult result = rt_exact_hit(geometry, a, &exact, &at[0]);
+    if (result == RT_HIT) result = rt_exact_hit(geometry, b, &exact, &at[1]);
     if (result == RT_HIT) {
-        *order = rt_root_compare(arena, &at[0], &at[1]);
-        long double first = rt_root_value(arena, &at[0], exact.zero);
-        *apart = *order == 0 ? 0 : fabsl(first - rt_root_value(arena, &at[1], exact.zero));
+        *order = rt_root_compare(&at[0], &at[1]);
+        long double first = rt_root_value(&at[0], exact.zero);
+        *apart = *order == 0 ? 0 : fabsl(first - rt_root_value(&at[1], exact.zero));
     }
-    rt_exact_arena_return(arena, mark);
+    rt_exact_rewind(mark);
     return result;
 }

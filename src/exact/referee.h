@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The referee: decides in exact arithmetic, from the float32 input alone (exact/exact_hit.h), which of two
- * answers to a ray is right. It relies on no margin and no hit function. It takes about 0.1 ms per object
- * near the ray, and a few ms for a tree of many tori, so it is used only where others disagree.
+ * answers to a ray is right. It takes about 0.1 ms per object near the ray, and a few ms for a tree of many
+ * tori, so it is used only where others disagree.
  *
- * The object of an answer is exact, its t is rounded; rounding can swap two objects that are closer than it,
- * hence the tolerance. An answer is right if its object is met, first at t, with
+ * Rounding can swap two objects that are closer than it, hence the tolerance. An answer is right if its
+ * object is met, first at t, with
  *
  *     t - (the nearest exact t of the scene) <= tolerance   and   |answer.t - t| <= tolerance,
  *
@@ -47,9 +47,6 @@ RtExactAnswer rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray);
 /* The same, and which of two answers is right. */
 RtExactAnswer rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit got,
                                double tolerance);
-
-/* Does the ray meet anything? Stops at the first object that it does meet. */
-RtExactResult rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray);
 
 /* ---- one or two objects ---- */
 

@@ -77,16 +77,15 @@ static void choose_modes(Worker *worker, size_t chunk) {
 static RtStatus run(Job *job, RtWork work, RtError *error) {
     job->threads = rt_thread_count(job->threads);
     job->chunks = (job->reference->count + CHUNK - 1) / CHUNK;
-    job->workers = rt_alloc((size_t)job->threads, sizeof(Worker));
-    if (!job->workers) return rt_fail_memory(error, "answers", (size_t)job->threads * sizeof(Worker));
-    RtStatus status = RT_OK;
+    RT_ARENA(memory);
+    job->workers = rt_arena_alloc(&memory, (size_t)job->threads, sizeof(Worker));
+    RtStatus status = rt_arena_check(&memory, "answers", error);
     for (int i = 0; i < job->threads && status == RT_OK; i++) {
         status = rt_query_init(&job->workers[i].query, job->accel, error);
     }
     if (status == RT_OK) status = rt_parallel_for(job->chunks, job->threads, work, job, error);
     if (status == RT_OK) status = rt_accel_check(job->accel, error);
-    for (int i = 0; i < job->threads; i++) rt_query_clear(&job->workers[i].query);
-    rt_free(job->workers);
+    for (int i = 0; job->workers && i < job->threads; i++) rt_query_clear(&job->workers[i].query);
     return status;
 }
 
@@ -160,9 +159,10 @@ RtStatus rt_reference_certain(const RtReference *reference, bool absolute, int t
     CertainJob job = {.reference = reference, .judge = {g, absolute}, .stride = reference->count / most + 1};
     job.count = (reference->count + job.stride - 1) / job.stride;
     size_t chunks = (size_t)(job.count + CHUNK - 1) / CHUNK;
-    job.parts = rt_alloc(chunks, sizeof(RtCertain));
-    if (!job.parts) return rt_fail_memory(error, "certain rays", chunks * sizeof(RtCertain));
-    RtStatus status = rt_parallel_for(chunks, rt_thread_count(threads), count_chunk, &job, error);
+    RT_ARENA(memory);
+    job.parts = rt_arena_alloc(&memory, chunks, sizeof(RtCertain));
+    RT_TRY(rt_arena_check(&memory, "certain rays", error));
+    RT_TRY(rt_parallel_for(chunks, rt_thread_count(threads), count_chunk, &job, error));
     *out = (RtCertain){0};
     for (size_t i = 0; i < chunks; i++) {
         out->rays += job.parts[i].rays;
@@ -170,8 +170,7 @@ RtStatus rt_reference_certain(const RtReference *reference, bool absolute, int t
         out->certain += job.parts[i].certain;
         out->must_hit += job.parts[i].must_hit;
     }
-    rt_free(job.parts);
-    return status;
+    return RT_OK;
 }
 
 /* At least how many of `rays` rays have what `found` of `sampled` have, with 97.5 % confidence? */
@@ -239,7 +238,7 @@ static RtStatus answer_chunk(RtQuery *query, const RtRay *rays, void *message, R
     return RT_OK;
 }
 
-RtJudge rt_judge_of(const RtAccel *accel) {
+static RtJudge judge_of(const RtAccel *accel) {
     return (RtJudge){&accel->scene->geometry, accel->absolute};
 }
 
@@ -247,7 +246,7 @@ RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expecte
                            RtVerdict *verdict, RtError *error) {
     *verdict = memcmp(&expected, &got, sizeof got) == 0 ? RT_EQUAL : RT_WRONG;
     if (*verdict == RT_EQUAL || query->accel->exact) return RT_OK;
-    return rt_verdict_nearest(rt_judge_of(query->accel), ray, expected, got, verdict, error);
+    return rt_verdict_nearest(judge_of(query->accel), ray, expected, got, verdict, error);
 }
 
 RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got,
@@ -255,7 +254,7 @@ RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expect
     bool blocked = expected.object != RT_NO_OBJECT;
     *verdict = blocked == got ? RT_EQUAL : RT_WRONG;
     if (*verdict == RT_EQUAL || query->accel->exact) return RT_OK;
-    return rt_verdict_occluded(rt_judge_of(query->accel), ray, blocked, got, verdict, error);
+    return rt_verdict_occluded(judge_of(query->accel), ray, blocked, got, verdict, error);
 }
 
 void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *wrong, size_t *first,
@@ -311,12 +310,12 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
     part->verdicts[worst]++;
     if (doubtful && !job->accel->exact) {
         RtSide side;
-        RT_TRY(rt_verdict_side(rt_judge_of(job->accel), ray, expected, *doubtful, &side, error));
+        RT_TRY(rt_verdict_side(judge_of(job->accel), ray, expected, *doubtful, &side, error));
         part->sides[side]++;
     }
     if (faulty && !job->accel->exact) {
         RtFault fault;
-        RT_TRY(rt_verdict_fault(rt_judge_of(job->accel), ray, *faulty, &fault, error));
+        RT_TRY(rt_verdict_fault(judge_of(job->accel), ray, *faulty, &fault, error));
         part->faults[fault]++;
     }
     part->occluded_wrong += occluded_wrong;
@@ -374,10 +373,11 @@ RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int 
     RT_TRY(rt_accel_learn(accel, reference->rays, reference->hits, reference->count, error));
     Job job = {.reference = reference, .accel = accel, .threads = threads};
     size_t chunks = (reference->count + CHUNK - 1) / CHUNK;
-    job.parts = rt_alloc(chunks, sizeof(RtEquivalence));
-    if (!job.parts) return rt_fail_memory(error, "verdicts", chunks * sizeof(RtEquivalence));
-    RtStatus status = run(&job, check_chunk, error);
-    for (size_t i = 0; i < chunks && status == RT_OK; i++) {
+    RT_ARENA(memory);
+    job.parts = rt_arena_alloc(&memory, chunks, sizeof(RtEquivalence));
+    RT_TRY(rt_arena_check(&memory, "verdicts", error));
+    RT_TRY(run(&job, check_chunk, error));
+    for (size_t i = 0; i < chunks; i++) {
         out->rays += job.parts[i].rays;
         out->occluded_wrong += job.parts[i].occluded_wrong;
         for (int v = 0; v < RT_VERDICT_COUNT; v++) out->verdicts[v] += job.parts[i].verdicts[v];
@@ -385,10 +385,8 @@ RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int 
         for (int f = 0; f < RT_FAULT_COUNT; f++) out->faults[f] += job.parts[i].faults[f];
         if (job.parts[i].any_wrong) keep_wrong_answer(out, job.parts[i].first_wrong);
     }
-    rt_free(job.parts);
-    if (status == RT_OK && !out->any_wrong && job.recounted.status != RT_OK)
-        return rt_fail(error, RT_BROKEN, "%s: %s", accel->ops->name, job.recounted.message);
-    return status;
+    if (out->any_wrong || job.recounted.status == RT_OK) return RT_OK;
+    return rt_fail(error, RT_BROKEN, "%s: %s", accel->ops->name, job.recounted.message);
 }
 
 /* ---- results as text ---- */

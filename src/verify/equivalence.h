@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Equivalence: does an accelerator answer every ray like brute?
  *
- * The reference answers are computed once for a scene and its rays, and then compared with any number of
- * accelerators. Each ray is traced four times, by the timed and the counted kernels of `nearest` and
- * `occluded`, in streams of 1, 7, 64 or a whole chunk of rays in turn. An exact accelerator is queried
- * both in short and in long streams, and must return the t bits and the id of the reference in each. Other
- * accelerators get verdicts (verify/verdict.h), the most severe of the four. Results are the same on any
- * number of threads. */
+ * Each ray is traced four times, by the timed and the counted kernels of `nearest` and `occluded`, in streams
+ * of 1, 7, 64 or a whole chunk of rays in turn. An exact accelerator is queried both in short and in long
+ * streams, and must return the t bits and the id of the reference in each. Other accelerators get verdicts
+ * (verify/verdict.h), the most severe of the four. Results are the same on any number of threads. */
 #ifndef RT_VERIFY_EQUIVALENCE_H
 #define RT_VERIFY_EQUIVALENCE_H
 
@@ -44,9 +42,8 @@ typedef struct RtEquivalence {
     uint64_t verdicts[RT_VERDICT_COUNT]; /* sum to `rays` */
     /* Rays with a marginal or wrong answer to `nearest`, by which answer is exactly right. */
     uint64_t sides[RT_SIDE_COUNT];
-    uint64_t
-        faults[RT_FAULT_COUNT]; /* of the wrong answers to `nearest` of an accelerator that is not exact */
-    uint64_t occluded_wrong;    /* rays, regardless of their verdict */
+    uint64_t faults[RT_FAULT_COUNT]; /* of wrong answers to `nearest`, unless it is exact */
+    uint64_t occluded_wrong;         /* rays, regardless of their verdict */
     bool any_wrong;
     RtWrongAnswer first_wrong; /* if any_wrong: of the lowest ray index */
 } RtEquivalence;
@@ -67,16 +64,13 @@ RtStatus rt_reference_certain(const RtReference *reference, bool absolute, int t
                               RtError *error);
 
 /* Do enough of `rays` rays have a certain answer for a verdict on an accelerator that is not exact? 1000
- * must, and a tenth of the hits, or 1000, must hit something; of rays from a file (`given`) half must, and
- * half of the hits. (An accelerator that hits nothing is right on every ray that misses for certain.)
- * Otherwise the result is undecided, which is no success. */
+ * must, and a tenth of the hits, or 1000, must hit something, since an accelerator that hits nothing is right
+ * on every ray that misses for certain; of rays from a file (`given`) half must, and half of the hits. */
 bool rt_certain_suffices(const RtCertain *certain, uint64_t rays, bool given);
 
 /* "undecided: ...", with a remedy, to out[0..size). */
 void rt_certain_undecided(const RtCertain *certain, uint64_t rays, bool given, bool absolute, char *out,
                           size_t size);
-
-RtJudge rt_judge_of(const RtAccel *accel);
 
 /* The verdict on an answer of the query's accelerator to `nearest`, or to `occluded`, given brute's
  * nearest hit `expected`: RT_EQUAL or RT_WRONG for an exact accelerator. RT_NO_MEMORY as in

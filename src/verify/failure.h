@@ -1,28 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A failure: rays one of which an accelerator answers wrong, for repeating the query: over the same scene,
- * over a part of it, or with another build.
+ * over a part of it, or with another build; and the fewest objects over which it still fails.
  *
  * The query is repeated with a newly built accelerator as in a check (verify/equivalence.h): `nearest` and
  * `occluded` in turn, stream by stream, with one of the two kernels. The other rays are included because a
- * failure may depend on earlier or simultaneous queries. */
+ * failure may depend on earlier or simultaneous queries.
+ *
+ * Shrinking is delta debugging (Zeller & Hildebrandt 2002, "Simplifying and Isolating Failure-Inducing
+ * Input", IEEE TSE 28(2)): objects are removed in halves, quarters, ... down to single ones while the answer
+ * stays wrong; each try builds the accelerator over the remaining objects and repeats the query. Objects keep
+ * their order. In the end every remaining object is necessary, unless the budget was exhausted. */
 #ifndef RT_VERIFY_FAILURE_H
 #define RT_VERIFY_FAILURE_H
 
 #include "verify/equivalence.h"
 
-/* Builds the accelerator in question over a scene. */
-typedef struct RtAccelBuilder {
-    RtStatus (*build)(const void *context, const RtScene *scene, int threads, RtAccel **out, RtError *error);
-    const void *context; /* borrowed */
-    int threads;         /* 0 = all processors; does not affect the structure */
-} RtAccelBuilder;
-
-/* Builds from a spec, which is borrowed. */
-RtAccelBuilder rt_accel_builder_of_spec(const char *spec);
-RtStatus rt_accel_builder_run(const RtAccelBuilder *builder, const RtScene *scene, RtAccel **out,
-                              RtError *error);
-
 typedef struct RtFailure {
+    const char *spec;  /* the accelerator; borrowed */
+    int threads;       /* to build it on; 0 = all processors. They do not affect the structure */
     const RtRay *rays; /* [count] borrowed, valid */
     size_t count;
     size_t asked;  /* the ray with the wrong answer */
@@ -38,12 +33,36 @@ typedef struct RtAnswer {
 } RtAnswer;
 
 /* Builds over `scene`, traces the rays, and compares with brute. */
-RtStatus rt_failure_ask(const RtFailure *failure, const RtScene *scene, RtAccelBuilder builder,
-                        RtAnswer *answer, RtError *error);
+RtStatus rt_failure_ask(const RtFailure *failure, const RtScene *scene, RtAnswer *answer, RtError *error);
 
-/* The failure for a wrong answer: its ray alone if that suffices, otherwise with all rays that were traced
- * together with it. `answer->wrong` is false if even then the answer is right: the error depended on more. */
-RtStatus rt_failure_of(const RtReference *reference, const RtWrongAnswer *wrong, RtAccelBuilder builder,
-                       RtFailure *failure, RtAnswer *answer, RtError *error);
+/* The failure for a wrong answer of the accelerator of `spec`: its ray alone if that suffices, otherwise with
+ * all rays that were traced together with it. `answer->wrong` is false if even then the answer is right: the
+ * error depended on more. */
+RtStatus rt_failure_of(const RtReference *reference, const RtWrongAnswer *wrong, const char *spec,
+                       int threads, RtFailure *failure, RtAnswer *answer, RtError *error);
+
+/* ---- shrinking ---- */
+
+/* Called after each try with the numbers of remaining objects and of tries. */
+typedef struct RtShrinkObserver {
+    void (*tried)(void *context, uint32_t left, uint32_t tries);
+    void *context;
+} RtShrinkObserver;
+
+/* The budget counts objects built over, so that the result does not depend on a clock; it lasts some
+ * seconds. */
+#define RT_SHRINK_BUDGET (UINT64_C(1) << 21)
+
+typedef struct RtShrunk {
+    uint32_t *ids; /* [count] remaining objects, ascending; owned: rt_free */
+    uint32_t count, tries;
+    bool minimal;    /* false: the budget was exhausted */
+    RtAnswer answer; /* over the remaining objects; its ids are positions in `ids` */
+} RtShrunk;
+
+/* Shrinks `scene` for a failure with `answer`. `observer` may be NULL. If the accelerator cannot be built
+ * over a part, its answer there counts as right. */
+RtStatus rt_shrink(const RtScene *scene, const RtFailure *failure, const RtAnswer *answer, uint64_t budget,
+                   const RtShrinkObserver *observer, RtShrunk *out, RtError *error);
 
 #endif

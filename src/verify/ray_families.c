@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The families of rays: one function per family generates one ray from its random numbers. */
 #include "verify/ray_families.h"
+
+#include "core/base/random.h"
 #include "rays/rayset.h"
-#include "verify/ray_points.h"
 
 #include <assert.h>
 
@@ -21,11 +22,111 @@ static uint32_t below(Generator *m, uint32_t n) {
     return rt_random_below(&m->random, n);
 }
 
-static RtVec3d point_of_object(Generator *m, RtWhere where, uint32_t *id) {
-    return rt_point_of_object(m->geometry, where, &m->random, rt_query_crossings(m->query), id);
+static double between(Generator *m, double lo, double hi) {
+    return rt_random_betweend(&m->random, lo, hi);
 }
 
-static RtVec3d some_point(Generator *m, RtWhere where) {
+static RtVec3d direction(Generator *m) {
+    return rt_random_direction(&m->random);
+}
+
+/* ---- points where rays start and aim; in an empty scene they are arbitrary ---- */
+
+/* A part of an object. The vertices of a sphere are the six points where it touches its box, those of a
+ * cone lie on its two circles; a CSG tree has the vertices and edges of the box of one of its solids. */
+typedef enum Where { AT_VERTEX, ON_EDGE, ON_SURFACE } Where;
+
+static RtVec3d point_in_box(Generator *m, const RtBox *box) {
+    RtVec3d p;
+    for (int a = 0; a < 3; a++) p.at[a] = between(m, (double)box->lo.at[a], (double)box->hi.at[a]);
+    return p;
+}
+
+static RtVec3d point_in_scene(Generator *m) {
+    if (m->geometry->object_count == 0) return direction(m);
+    return point_in_box(m, &m->geometry->box);
+}
+
+/* The box of a random object, or of the scene. */
+static const RtBox *some_box(Generator *m) {
+    const RtGeometry *g = m->geometry;
+    static const RtBox unit = {{-1, -1, -1}, {1, 1, 1}};
+    if (g->object_count == 0) return &unit;
+    if (below(m, 4) == 0) return &g->box;
+    return &g->boxes[below(m, g->object_count)];
+}
+
+/* A point of a cone's side, or of one of its circles if `rim`. */
+static RtVec3d point_of_cone(Generator *m, const RtCone *cone, bool rim) {
+    RtVec3d around = rt_normalized(rt_crossd(cone->axis, direction(m)));
+    double s = rim ? (double)below(m, 2) : between(m, 0, 1);
+    double radius = (double)cone->base_radius + cone->slope * cone->height * s;
+    return rt_add_scaledd(rt_add_scaledd(rt_widen(cone->base), cone->axis, cone->height * s), around, radius);
+}
+
+static RtVec3d point_of_vertices(Generator *m, const RtVec3 *v, uint32_t count, Where where) {
+    uint32_t i = below(m, count);
+    RtVec3d a = rt_widen(v[i]), b = rt_widen(v[(i + 1) % count]), c = rt_widen(v[(i + 2) % count]);
+    if (where == AT_VERTEX) return a;
+    RtVec3d p = rt_add_scaledd(a, rt_subd(b, a), between(m, 0, 1));
+    return where == ON_EDGE ? p : rt_add_scaledd(p, rt_subd(c, p), between(m, 0, 1));
+}
+
+/* One of the six points where a sphere touches its box, or any other. */
+static RtVec3d point_of_sphere(Generator *m, const RtSphere *sphere, Where where) {
+    RtVec3d out = direction(m);
+    if (where == AT_VERTEX) {
+        uint32_t pole = below(m, 6);
+        out = rt_vec3d(0, 0, 0);
+        out.at[pole / 2] = pole % 2 ? 1 : -1;
+    }
+    return rt_add_scaledd(rt_widen(sphere->center), out, (double)sphere->radius);
+}
+
+/* For a tree: a corner or an edge point of the box of one of its solids, or where a random line meets the
+ * tree. */
+static RtVec3d point_of_csg(Generator *m, uint32_t id, Where where) {
+    const RtGeometry *g = m->geometry;
+    const RtCsg *tree = &g->csgs[rt_ref_index(g->objects[id])];
+    if (where == ON_SURFACE) {
+        RtRay ray = rt_random_chord(&tree->box, &m->random);
+        RtPreparedRay prepared = rt_ray_prepare(&ray, &tree->box);
+        prepared.crossings = rt_query_crossings(m->query);
+        float t;
+        if (rt_object_hit(g, id, &prepared, &t, NULL)) return rt_ray_point(&ray, t);
+    }
+    const RtBox *box = &g->forest.set.solids[tree->first_solid + below(m, tree->solid_count)].box;
+    if (!rt_finite(box->lo) || !rt_finite(box->hi)) box = &tree->box;
+    RtVec3d p = point_in_box(m, box);
+    uint32_t along = where == AT_VERTEX ? 3 : below(m, 3);
+    for (uint32_t a = 0; a < 3; a++) {
+        if (a != along) p.at[a] = (double)(below(m, 2) ? box->hi : box->lo).at[a];
+    }
+    return p;
+}
+
+/* A point of a random object, and its id (RT_NO_OBJECT if there is none). */
+static RtVec3d point_of_object(Generator *m, Where where, uint32_t *id) {
+    const RtGeometry *g = m->geometry;
+    *id = RT_NO_OBJECT;
+    if (g->object_count == 0) return point_in_scene(m);
+    *id = below(m, g->object_count);
+    uint32_t index = rt_ref_index(g->objects[*id]);
+    switch (rt_ref_shape(g->objects[*id])) {
+    case RT_SHAPE_SPHERE: return point_of_sphere(m, &g->spheres[index], where);
+    case RT_SHAPE_TRIANGLE: return point_of_vertices(m, g->triangles[index].v, 3, where);
+    case RT_SHAPE_POLYGON:
+        return point_of_vertices(m, rt_polygon_vertices(g, index), g->polygons[index].count, where);
+    case RT_SHAPE_CONE: return point_of_cone(m, &g->cones[index], where != ON_SURFACE);
+    case RT_SHAPE_CSG: return point_of_csg(m, *id, where);
+    case RT_SHAPE_COUNT: break;
+    }
+    return point_in_scene(m);
+}
+
+/* ---- rays ---- */
+
+static RtVec3d some_point(Generator *m, Where where) {
     uint32_t id;
     return point_of_object(m, where, &id);
 }
@@ -36,8 +137,7 @@ static RtRay ray_along(RtVec3d from, RtVec3d dir) {
 
 /* From a random point around or inside the scene through `target`. */
 static RtRay ray_through(Generator *m, RtVec3d target) {
-    RtVec3d from = below(m, 2) ? rt_point_in_scene(m->geometry, &m->random)
-                               : rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
+    RtVec3d from = below(m, 2) ? point_in_scene(m) : rt_add_scaledd(m->center, direction(m), 2 * m->size);
     return (RtRay){.org = rt_narrow(from),
                    .dir = rt_sub(rt_narrow(target), rt_narrow(from)),
                    .tmax = INFINITY,
@@ -52,7 +152,7 @@ static RtRay chord(Generator *m) {
 
 /* Parallel to an axis; the other components are +0 or -0. */
 static RtRay along_axis(Generator *m) {
-    RtVec3d p = rt_point_in_scene(m->geometry, &m->random), dir;
+    RtVec3d p = point_in_scene(m), dir;
     int axis = (int)below(m, 3);
     for (int a = 0; a < 3; a++) dir.at[a] = below(m, 2) ? 0.0 : -0.0;
     dir.at[axis] = below(m, 2) ? 1 : -1;
@@ -63,7 +163,7 @@ static RtRay along_axis(Generator *m) {
 /* From points at simple fractions of a box in simple directions: through its corners, edges and midpoints,
  * and through the corners of a grid's voxels. */
 static RtRay on_fractions(Generator *m) {
-    const RtBox *box = rt_some_box(m->geometry, &m->random);
+    const RtBox *box = some_box(m);
     RtVec3d from, to;
     for (int a = 0; a < 3; a++) {
         double lo = (double)box->lo.at[a], hi = (double)box->hi.at[a];
@@ -77,14 +177,14 @@ static RtRay on_fractions(Generator *m) {
 }
 
 static RtRay from_surface(Generator *m) {
-    RtVec3d p = some_point(m, RT_ON_SURFACE);
-    return ray_along(p, rt_random_direction(&m->random));
+    RtVec3d p = some_point(m, ON_SURFACE);
+    return ray_along(p, direction(m));
 }
 
 /* From a point on a face of a box, within the face or away from it. */
 static RtRay from_box_face(Generator *m) {
-    const RtBox *box = rt_some_box(m->geometry, &m->random);
-    RtVec3d p = rt_point_in_box(box, &m->random), dir = rt_random_direction(&m->random);
+    const RtBox *box = some_box(m);
+    RtVec3d p = point_in_box(m, box), dir = direction(m);
     int axis = (int)below(m, 3);
     p.at[axis] = (double)(below(m, 2) ? box->hi : box->lo).at[axis];
     if (below(m, 2)) dir.at[axis] = below(m, 2) ? 0.0 : -0.0;
@@ -94,25 +194,25 @@ static RtRay from_box_face(Generator *m) {
 
 /* Some end where they begin. */
 static RtRay from_inside(Generator *m) {
-    const RtBox *box = rt_some_box(m->geometry, &m->random);
-    RtVec3d p = below(m, 2) ? rt_widen(rt_box_center(*box)) : rt_point_in_box(box, &m->random);
-    RtRay ray = ray_along(p, rt_random_direction(&m->random));
+    const RtBox *box = some_box(m);
+    RtVec3d p = below(m, 2) ? rt_widen(rt_box_center(*box)) : point_in_box(m, box);
+    RtRay ray = ray_along(p, direction(m));
     if (below(m, 16) == 0) ray.tmax = 0;
     return ray;
 }
 
 static RtRay at_vertex(Generator *m) {
-    return ray_through(m, some_point(m, RT_AT_VERTEX));
+    return ray_through(m, some_point(m, AT_VERTEX));
 }
 
 static RtRay at_edge(Generator *m) {
-    return ray_through(m, some_point(m, RT_ON_EDGE));
+    return ray_through(m, some_point(m, ON_EDGE));
 }
 
 /* A random direction along the surface of an object at p, and its normal there; without an object just a
  * direction, and 0. */
 static RtVec3d direction_along(Generator *m, uint32_t id, RtVec3d p, RtVec3d *normal) {
-    RtVec3d dir = rt_random_direction(&m->random);
+    RtVec3d dir = direction(m);
     *normal = rt_vec3d(0, 0, 0);
     if (id == RT_NO_OBJECT) return dir;
     RtRay at = ray_along(p, dir);
@@ -123,7 +223,7 @@ static RtVec3d direction_along(Generator *m, uint32_t id, RtVec3d p, RtVec3d *no
 /* Touches an object: in the plane of a flat one, along the silhouette of a round one. */
 static RtRay tangent(Generator *m) {
     uint32_t id;
-    RtVec3d normal, p = point_of_object(m, below(m, 2) ? RT_ON_SURFACE : RT_AT_VERTEX, &id);
+    RtVec3d normal, p = point_of_object(m, below(m, 2) ? ON_SURFACE : AT_VERTEX, &id);
     RtVec3d dir = direction_along(m, id, p, &normal);
     return ray_along(rt_add_scaledd(p, dir, -m->size), dir);
 }
@@ -132,8 +232,8 @@ static RtRay tangent(Generator *m) {
 static RtRay from_afar(Generator *m) {
     static const double sizes[] = {1e3, 1e4, 1e5, 1e6, 1e7};
     double distance = m->size * sizes[below(m, 5)];
-    RtVec3d from = rt_add_scaledd(m->center, rt_random_direction(&m->random), distance);
-    RtVec3d to = below(m, 2) ? rt_point_in_scene(m->geometry, &m->random) : some_point(m, RT_ON_SURFACE);
+    RtVec3d from = rt_add_scaledd(m->center, direction(m), distance);
+    RtVec3d to = below(m, 2) ? point_in_scene(m) : some_point(m, ON_SURFACE);
     return ray_along(from, rt_normalized(rt_subd(to, from)));
 }
 
@@ -185,7 +285,7 @@ static RtRay past_hits(Generator *m) {
 
 /* A random direction, or one along an axis or diagonal, with components 0 or +-1. */
 static RtVec3d free_direction(Generator *m) {
-    if (below(m, 2)) return rt_random_direction(&m->random);
+    if (below(m, 2)) return direction(m);
     RtVec3d dir;
     for (int a = 0; a < 3; a++) dir.at[a] = (double)below(m, 3) - 1;
     if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir.at[below(m, 3)] = 1;
@@ -206,9 +306,9 @@ static uint32_t some_resolution(Generator *m) {
 
 /* From a corner or an edge of a voxel. */
 static RtRay from_voxel_corner(Generator *m) {
-    const RtBox *box = below(m, 2) ? &m->geometry->box : rt_some_box(m->geometry, &m->random);
-    if (m->geometry->object_count == 0) box = rt_some_box(m->geometry, &m->random);
-    RtVec3d p = rt_point_in_box(box, &m->random);
+    const RtBox *box = below(m, 2) ? &m->geometry->box : some_box(m);
+    if (m->geometry->object_count == 0) box = some_box(m);
+    RtVec3d p = point_in_box(m, box);
     uint32_t voxels = some_resolution(m), along = below(m, 6);
     for (int a = 0; a < 3; a++) {
         if (a != (int)along) p.at[a] = voxel_plane(m, box, a, voxels);
@@ -218,9 +318,9 @@ static RtRay from_voxel_corner(Generator *m) {
 
 /* Within a plane of voxels or a face of a box, from inside or outside. */
 static RtRay in_plane(Generator *m) {
-    const RtBox *box = rt_some_box(m->geometry, &m->random);
+    const RtBox *box = some_box(m);
     int axis = (int)below(m, 3);
-    RtVec3d p = rt_point_in_box(box, &m->random), dir = free_direction(m);
+    RtVec3d p = point_in_box(m, box), dir = free_direction(m);
     p.at[axis] = voxel_plane(m, box, axis, below(m, 2) ? 1 : some_resolution(m));
     dir.at[axis] = below(m, 2) ? 0.0 : -0.0;
     if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir.at[(axis + 1) % 3] = -1;
@@ -252,12 +352,12 @@ static RtRay along_edge(Generator *m) {
 static RtRay grazing(Generator *m) {
     static const double angles[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
     uint32_t id;
-    RtVec3d normal, p = point_of_object(m, RT_ON_SURFACE, &id), dir = direction_along(m, id, p, &normal);
+    RtVec3d normal, p = point_of_object(m, ON_SURFACE, &id), dir = direction_along(m, id, p, &normal);
     if (id != RT_NO_OBJECT) {
         double angle = angles[below(m, 7)];
         dir = rt_add_scaledd(rt_normalized(dir), normal, below(m, 2) ? angle : -angle);
     }
-    return ray_along(rt_add_scaledd(p, dir, -m->size * rt_random_betweend(&m->random, 0, 2)), dir);
+    return ray_along(rt_add_scaledd(p, dir, -m->size * between(m, 0, 2)), dir);
 }
 
 /* Components that are denormal, the smallest normal number, 0 or -0, beside a regular one. */
@@ -266,7 +366,7 @@ static RtRay denormal(Generator *m) {
                                  0x1p-126f, -0x1p-126f, 0.0f,      -0.0f};
     RtRay ray = along_axis(m);
     if (below(m, 2)) {
-        RtVec3d from = some_point(m, RT_AT_VERTEX);
+        RtVec3d from = some_point(m, AT_VERTEX);
         ray = ray_along(from, free_direction(m));
     }
     int whole = (int)below(m, 3);
@@ -285,22 +385,21 @@ static RtRay to_light(Generator *m) {
     uint32_t light = below(m, m->scene->light_count);
     RtVec3d to = rt_widen(m->scene->lights[light].position), from;
     switch (below(m, 5)) {
-    case 0: from = some_point(m, RT_ON_SURFACE); break;
-    case 1: from = some_point(m, RT_ON_EDGE); break;
-    case 2: from = rt_point_in_scene(m->geometry, &m->random); break;
+    case 0: from = some_point(m, ON_SURFACE); break;
+    case 1: from = some_point(m, ON_EDGE); break;
+    case 2: from = point_in_scene(m); break;
     case 3: /* far away, past an edge, or behind the light */
-        from = some_point(m, RT_ON_EDGE);
-        from =
-            rt_add_scaledd(to, rt_subd(to, from), below(m, 2) ? 1 : -rt_random_betweend(&m->random, 1, 1e4));
+        from = some_point(m, ON_EDGE);
+        from = rt_add_scaledd(to, rt_subd(to, from), below(m, 2) ? 1 : -between(m, 1, 1e4));
         break;
-    default: from = rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
+    default: from = rt_add_scaledd(m->center, direction(m), 2 * m->size);
     }
-    if (below(m, 2)) from = rt_add_scaledd(from, rt_subd(to, from), rt_random_betweend(&m->random, 0, 1e-4));
+    if (below(m, 2)) from = rt_add_scaledd(from, rt_subd(to, from), between(m, 0, 1e-4));
     RtRay ray = {.org = rt_narrow(from), .tmax = 1, .kind = RT_RAY_SHADOW, .source = light};
     ray.dir = rt_sub(m->scene->lights[light].position, ray.org);
     switch (below(m, 16)) {
     case 0: ray.source = below(m, m->scene->light_count + 2); break;
-    case 1: ray.tmax = (float)rt_random_betweend(&m->random, 0, 2); break;
+    case 1: ray.tmax = (float)between(m, 0, 2); break;
     case 2: ray.dir.at[below(m, 3)] *= 1 + 0x1p-20f; break;
     case 3: ray.tmax = INFINITY; break;
     default: break;
@@ -318,7 +417,7 @@ static RtRay through_sample(Generator *m) {
     RtRay ray = rt_view_ray(&m->view, column, row);
     switch (below(m, 16)) {
     case 0: ray.source = below(m, s->columns * s->rows + 2); break;
-    case 1: ray.tmax = (float)rt_random_betweend(&m->random, 0, 2 * m->size); break;
+    case 1: ray.tmax = (float)between(m, 0, 2 * m->size); break;
     case 2: ray.dir.at[below(m, 3)] *= 1 + 0x1p-20f; break;
     case 3: ray.org.at[below(m, 3)] += (float)m->size * 0x1p-10f; break;
     default: break;
@@ -339,8 +438,8 @@ static RtRay in_bundle(Generator *m) {
     int major = rt_major_axis(lead.dir), other = (major + 1) % 3;
     bool diagonal = below(m, 4) == 0;
     m->random = own;
-    if (how != 0) from = rt_add_scaledd(from, rt_random_direction(&m->random), jitter * m->size);
-    if (how != 1) dir = rt_add_scaledd(dir, rt_random_direction(&m->random), jitter / 2);
+    if (how != 0) from = rt_add_scaledd(from, direction(m), jitter * m->size);
+    if (how != 1) dir = rt_add_scaledd(dir, direction(m), jitter / 2);
     if (diagonal) dir.at[other] = copysign(dir.at[major] * (below(m, 2) ? 1 : 1 + 1e-6), dir.at[other]);
     return ray_along(from, dir);
 }

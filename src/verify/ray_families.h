@@ -2,9 +2,8 @@
 /* Families of rays that are hard on accelerators: they graze, start or end on surfaces, or run along axes,
  * edges and the faces of boxes.
  *
- * Each ray is generated from its own stream of the seed: ray i of a family is always the same, in any
- * order and on any thread. A family without a target (no vertices in a scene of spheres, an empty scene)
- * aims at other suitable points. */
+ * Each ray is generated from its own stream of the seed, so ray i of a family is always the same. A family
+ * without a target (no vertices in a scene of spheres) aims at other suitable points. */
 #ifndef RT_VERIFY_RAY_FAMILIES_H
 #define RT_VERIFY_RAY_FAMILIES_H
 

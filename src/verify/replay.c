@@ -77,15 +77,14 @@ static json_t *record_json(const RtReplayRecord *r, RtError *error) {
     json_t *rays = json_array();
     for (size_t i = 0; i < q->count; i++) json_array_append_new(rays, ray_json(&q->rays[i]));
     bool whole = !rt_builtin_find(r->scene_spec) && r->scene->geometry.object_count <= MOST_OBJECTS;
-    return json_pack("{s:i, s:s, s:o, s:o, s:[I, I], s:s, s:s, s:s, s:I, s:I, s:o, s:o, s:o, s:o}", "format",
-                     RT_FILE_FORMAT, "scene", r->scene_spec, "fingerprint",
-                     rt_json_hex(rt_scene_fingerprint(r->scene)), "yaml",
-                     whole ? yaml_json(r->scene) : json_null(), "sampling",
-                     (json_int_t)r->scene->sampling.columns, (json_int_t)r->scene->sampling.rows, "accel",
-                     r->accel_spec, "query", q->occluded ? "occluded" : "nearest", "kernel",
-                     q->counted ? "counted" : "timed", "stream", (json_int_t)q->stream, "asked",
-                     (json_int_t)q->asked, "rays", rays, "expected", hit_json(r->answer->expected), "got",
-                     got_json(q, r->answer), "shrunk", r->shrunk ? shrunk_json(r, error) : json_null());
+    return json_pack(
+        "{s:i, s:s, s:o, s:o, s:[I, I], s:s, s:s, s:s, s:I, s:I, s:o, s:o, s:o, s:o}", "format",
+        RT_FILE_FORMAT, "scene", r->scene_spec, "fingerprint", rt_json_hex(rt_scene_fingerprint(r->scene)),
+        "yaml", whole ? yaml_json(r->scene) : json_null(), "sampling", (json_int_t)r->scene->sampling.columns,
+        (json_int_t)r->scene->sampling.rows, "accel", q->spec, "query", q->occluded ? "occluded" : "nearest",
+        "kernel", q->counted ? "counted" : "timed", "stream", (json_int_t)q->stream, "asked",
+        (json_int_t)q->asked, "rays", rays, "expected", hit_json(r->answer->expected), "got",
+        got_json(q, r->answer), "shrunk", r->shrunk ? shrunk_json(r, error) : json_null());
 }
 
 RtStatus rt_replay_save(const char *path, const RtReplayRecord *record, RtError *error) {
@@ -138,18 +137,18 @@ static bool get_ray(const json_t *object, RtRay *ray) {
 static bool take(RtReplay *r, const char **wrong) {
     const json_t *d = r->document, *rays = json_object_get(d, "rays");
     const json_t *sampling = json_object_get(d, "sampling"), *shrunk = json_object_get(d, "shrunk");
+    RtFailure *q = &r->failure;
     uint64_t stream, asked;
     const char *hex = json_string_value(json_object_get(d, "fingerprint"));
     r->scene_spec = json_string_value(json_object_get(d, "scene"));
-    r->accel_spec = json_string_value(json_object_get(d, "accel"));
+    q->spec = json_string_value(json_object_get(d, "accel"));
     r->yaml = json_string_value(json_object_get(d, "yaml"));
     r->shrunk_yaml = json_string_value(json_object_get(shrunk, "yaml"));
     r->columns = (uint32_t)json_integer_value(json_array_get(sampling, 0));
     r->rows = (uint32_t)json_integer_value(json_array_get(sampling, 1));
-    RtFailure *q = &r->failure;
     q->count = json_array_size(rays);
     if (*wrong = "scene", !r->scene_spec) return false;
-    if (*wrong = "accel", !r->accel_spec) return false;
+    if (*wrong = "accel", !q->spec) return false;
     if (*wrong = "fingerprint", !hex || sscanf(hex, "%" SCNx64, &r->fingerprint) != 1) return false;
     if (*wrong = "sampling", json_array_size(sampling) != 2) return false;
     if (*wrong = "query", !get_word(d, "query", "nearest", "occluded", &q->occluded)) return false;
@@ -219,14 +218,11 @@ static RtStatus open_scene(const RtReplay *r, bool shrunk, RtScene *scene, RtErr
     return rt_fail(error, RT_BAD_INPUT, "%s has changed since the replay file was written", r->scene_spec);
 }
 
-RtStatus rt_replay_ask(const RtReplay *replay, RtAccelBuilder builder, bool shrunk, RtAnswer *answer,
-                       RtError *error) {
+RtStatus rt_replay_ask(const RtReplay *replay, bool shrunk, RtAnswer *answer, RtError *error) {
     RtScene scene;
     RT_TRY(open_scene(replay, shrunk, &scene, error));
     RtStatus status = rt_scene_sample(&scene, replay->columns, replay->rows, 1, false, error);
-    if (status == RT_OK) {
-        status = rt_failure_ask(&replay->failure, &scene, builder, answer, error);
-    }
+    if (status == RT_OK) status = rt_failure_ask(&replay->failure, &scene, answer, error);
     rt_scene_clear(&scene);
     return status;
 }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A replay file: a wrong answer with everything needed to repeat the query on any machine, as one JSON
- * document.
+/* A replay file: a wrong answer with everything needed to repeat the query, as one JSON document.
  *
  *   scene, fingerprint   the scene's name and rt_scene_fingerprint; "yaml" is the scene itself if it came
  *                        from a file and is not too large
@@ -15,11 +14,11 @@
 #ifndef RT_VERIFY_REPLAY_H
 #define RT_VERIFY_REPLAY_H
 
-#include "verify/shrink.h"
+#include "verify/failure.h"
 
 /* The content of a replay file. */
 typedef struct RtReplayRecord {
-    const char *scene_spec, *accel_spec;
+    const char *scene_spec;
     const RtScene *scene;
     const RtFailure *failure;
     const RtAnswer *answer;
@@ -31,9 +30,9 @@ RtStatus rt_replay_save(const char *path, const RtReplayRecord *record, RtError 
 /* A replay file in memory. Clear with rt_replay_clear. */
 typedef struct RtReplay {
     json_t *document;
-    RtRay *rays;                                              /* owned */
-    RtFailure failure;                                        /* of `rays` */
-    const char *scene_spec, *accel_spec, *yaml, *shrunk_yaml; /* in the document; the last two or NULL */
+    RtRay *rays;                                 /* owned */
+    RtFailure failure;                           /* of `rays`, of a spec in the document */
+    const char *scene_spec, *yaml, *shrunk_yaml; /* in the document; the last two or NULL */
     uint64_t fingerprint;
     uint32_t columns, rows;
 } RtReplay;
@@ -42,10 +41,8 @@ typedef struct RtReplay {
 RtStatus rt_replay_load(RtReplay *replay, const char *path, RtError *error);
 void rt_replay_clear(RtReplay *replay);
 
-/* Repeats the query with the accelerator of `builder` (usually from the spec) over the scene, or over its
- * remaining objects if `shrunk`. RT_NOT_AVAILABLE if nothing was shrunk, RT_BAD_INPUT if the scene has
- * changed; then nothing is known about the answer. */
-RtStatus rt_replay_ask(const RtReplay *replay, RtAccelBuilder builder, bool shrunk, RtAnswer *answer,
-                       RtError *error);
+/* Repeats the query over the scene, or over its remaining objects if `shrunk`. RT_NOT_AVAILABLE if nothing
+ * was shrunk, RT_BAD_INPUT if the scene has changed; then nothing is known about the answer. */
+RtStatus rt_replay_ask(const RtReplay *replay, bool shrunk, RtAnswer *answer, RtError *error);
 
 #endif

@@ -10,9 +10,7 @@
  *     if another object is certainly hit before
  *
  * and a ray is certain if only one answer is not wrong: if nothing is possible, or a certain object precedes
- * all other possible ones. An accelerator that never hits anything is wrong for every certain hit. Where the
- * margins allow several answers, nothing can be said of any of them; so a verdict on an accelerator needs
- * enough certain rays (verify.h). */
+ * all other possible ones. A verdict on an accelerator needs enough certain rays (equivalence.h). */
 #ifndef RT_VERIFY_VERDICT_H
 #define RT_VERIFY_VERDICT_H
 

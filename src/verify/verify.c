@@ -35,12 +35,6 @@ typedef struct Run {
     RtError unsaved; /* why the replay file of the row could not be written, or empty */
 } Run;
 
-static RtAccelBuilder builder_of(const Run *run, const RtVerifySpec *spec) {
-    RtAccelBuilder builder = spec->builder.build ? spec->builder : rt_accel_builder_of_spec(spec->spec);
-    builder.threads = run->verify->rays.threads;
-    return builder;
-}
-
 static void doing(Run *run, const char *what) {
     run->progress.what = what;
     run->observer->doing(run->observer->context, &run->progress);
@@ -167,7 +161,7 @@ static RtStatus save_replay(const Run *run, const RtReplayRecord *record, char *
     const char *folder = run->verify->folder ? run->verify->folder : FAILURES;
     char text[160], name[sizeof text];
     snprintf(text, sizeof text, "%04zu-%.60s-%.50s.json", json_array_size(run->rows) + 1, record->scene_spec,
-             record->accel_spec);
+             record->failure->spec);
     rt_file_name(text, name, sizeof name);
     RT_TRY(rt_directory_create(folder, error));
     RT_TRY(rt_path_join(folder, name, path, error));
@@ -195,17 +189,17 @@ static uint64_t shrink_budget(const Run *run, const char *spec) {
  * cannot be written. */
 static RtStatus keep_failure(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec,
                              const RtWrongAnswer *wrong, json_t *row, RtError *error) {
-    RtAccelBuilder builder = builder_of(run, spec);
     RtShrinkObserver observer = {on_tried, run};
     RtFailure failure;
     RtAnswer answer;
     RtShrunk shrunk = {.count = scene->scene.geometry.object_count};
     uint64_t budget = shrink_budget(run, spec->spec);
     char path[RT_MAX_PATH];
-    RT_TRY(rt_failure_of(&scene->reference, wrong, builder, &failure, &answer, error));
-    RtReplayRecord record = {scene->name, spec->spec, &scene->scene, &failure, &answer, NULL};
+    RT_TRY(rt_failure_of(&scene->reference, wrong, spec->spec, run->verify->rays.threads, &failure, &answer,
+                         error));
+    RtReplayRecord record = {scene->name, &scene->scene, &failure, &answer, NULL};
     if (answer.wrong && budget > 0) {
-        RT_TRY(rt_shrink(&scene->scene, &failure, &answer, builder, budget, &observer, &shrunk, error));
+        RT_TRY(rt_shrink(&scene->scene, &failure, &answer, budget, &observer, &shrunk, error));
         record.shrunk = &shrunk;
     }
     const bool saved = save_replay(run, &record, path, &run->unsaved) == RT_OK;
@@ -283,10 +277,10 @@ static void skip_inexact(Run *run, const char *spec) {
 
 static RtStatus verify_spec(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec, RtError *error) {
     RtAccel *accel = NULL;
-    RtAccelBuilder builder = builder_of(run, spec);
     doing(run, spec->spec);
     rt_memory_limit(run->verify->memory);
-    RtStatus status = rt_memory_unlimit(rt_accel_builder_run(&builder, &scene->scene, &accel, error), error);
+    RtStatus status = rt_memory_unlimit(
+        rt_accel_open_on(spec->spec, &scene->scene, run->verify->rays.threads, &accel, error), error);
     if (status == RT_NOT_AVAILABLE && !spec->named) {
         char notice[sizeof error->message + RT_MAX_SPEC_CHARS + RT_MAX_SCENE_NAME];
         snprintf(notice, sizeof notice, "%s on %s is skipped: %s", spec->spec, scene->name, error->message);

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Verification: does every accelerator answer every ray of every scene like brute?
  *
- * A row is a scene and a spec, with the numbers of equal, tied, marginal and wrong answers; its first
- * wrong answer is kept in a replay file (verify/replay.h). The first failure of a spec is shrunk to a few
- * objects, up to eight failures in all, each with half the budget of the one before; if more than one is
- * asked for (RtVerify.shrink), each has the whole budget. Rows are appended to a journal, from which an
- * interrupted run resumes, and finally to the tables of verify_table.h: the same bytes for the same seed, for
- * any number of threads and interruptions. */
+ * A row is a scene and a spec, with the numbers of equal, tied, marginal and wrong answers; its first wrong
+ * answer is kept in a replay file (verify/replay.h). The first failure of a spec is shrunk to a few objects,
+ * up to eight failures in all, each with half the budget of the one before; if more than one is asked for
+ * (RtVerify.shrink), each has the whole budget. Rows are appended to a journal, from which an interrupted run
+ * resumes, and finally to the tables of verify_table.h. */
 #ifndef RT_VERIFY_VERIFY_H
 #define RT_VERIFY_VERIFY_H
 
@@ -19,7 +18,6 @@
 typedef struct RtVerifySpec {
     char spec[RT_MAX_SPEC_CHARS];
     bool named, judged;
-    RtAccelBuilder builder; /* how it is built; if zero, from the spec */
 } RtVerifySpec;
 
 #define RT_SHRINK_ALL UINT32_MAX
@@ -50,10 +48,10 @@ typedef struct RtVerifyObserver {
     void *context;
 } RtVerifyObserver;
 
-/* Runs the verification. All scenes are opened before the first is verified, and each is closed after its
- * turn; only then is the folder touched, and no other process can write into it meanwhile. *rows is a new
- * array of rows as `verify --json` prints them, in the order of scenes and specs; the observer sees each,
- * including those of an earlier run. A wrong answer is a result, not an error. */
+/* Runs the verification. All scenes are opened before the folder is touched; no other process can write into
+ * it meanwhile. *rows is a new array of rows as `verify --json` prints them, in the order of scenes and
+ * specs; the observer sees each, including those of an earlier run. A wrong answer is a result, not an error.
+ */
 RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer, json_t **rows,
                        RtError *error);
 

@@ -4,7 +4,6 @@
 #include "csg_testing.h"
 #include "item_testing.h"
 
-#include "exact/precision.h"
 #include "verify/failure.h"
 #include "verify/spread.h"
 
@@ -153,8 +152,8 @@ static RtStatus build_item(const Row *row, RtError *error) {
 
 static RtStatus ask(const Row *row, RtError *error) {
     RtAnswer answer;
-    RtFailure failure = {.rays = row->rays, .count = RAYS, .stream = RAYS};
-    RT_TRY(rt_failure_ask(&failure, &row->scene, rt_accel_builder_of_spec("item+grid"), &answer, error));
+    RtFailure failure = {.spec = "item+grid", .rays = row->rays, .count = RAYS, .stream = RAYS};
+    RT_TRY(rt_failure_ask(&failure, &row->scene, &answer, error));
     assert_int_equal(answer.expected.object, 0);
     assert_false(answer.wrong);
     return RT_OK;
@@ -182,18 +181,9 @@ static RtStatus judge(const Row *row, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus measure_precision(const Row *row, RtError *error) {
-    RtPrecision precision;
-    (void)row;
-    RT_TRY(rt_precision_measure(RT_SUBJECT_MESH, 0, 2, &precision, error));
-    assert_int_equal(precision.missed + precision.invented + precision.elsewhere, 0);
-    return RT_OK;
-}
-
 RT_TEST(no_shortage_of_memory_becomes_a_verdict) {
     OWNED(clear_row) Row row = make_balls();
     assert_every_shortage_is_a_status(judge, &row, "exact arithmetic");
-    assert_every_shortage_is_a_status(measure_precision, &row, "exact arithmetic");
 }
 
 RT_TEST(no_shortage_of_memory_becomes_a_miss) {

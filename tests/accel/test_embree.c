@@ -186,7 +186,8 @@ RT_TEST(native_mode_takes_every_ray_and_agrees_with_brute_on_every_shape) {
 
 static void ask_native(const char *scene_spec, const char *spec, RtRay ray, RtAnswer *answer) {
     OWNED_SCENE scene = open_scene(scene_spec);
-    RtFailure failure = {.rays = &ray, .count = 1, .stream = 1, .occluded = ray.kind == RT_RAY_OCCLUSION};
+    RtFailure failure = {.spec = spec, .rays = &ray, .count = 1, .stream = 1};
+    failure.occluded = ray.kind == RT_RAY_OCCLUSION;
     assert_ok(rt_failure_ask(&failure, &scene, rt_accel_builder_of_spec(spec), answer, error));
 }
 

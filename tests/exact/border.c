@@ -100,15 +100,15 @@ double rt_border_distance(const RtGeometry *geometry, uint32_t id, const RtRay *
 
 RtExactResult rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
                                long double *off, long double *ulps) {
-    RtExactArena arena = {0};
+    size_t mark = rt_exact_mark();
     RtWideRay line = rt_wide_ray(ray);
-    RtExactLine exact = rt_exact_line(&arena, &line);
+    RtExactLine exact = rt_exact_line(&line);
     RtRoot at;
-    RtExactResult finding = rt_exact_hit(&arena, geometry, id, &exact, &at);
+    RtExactResult finding = rt_exact_hit(geometry, id, &exact, &at);
     if (finding == RT_HIT) {
-        *off = -rt_root_value(&arena, &at, rt_exact_of(&arena, (double)t));
-        *ulps = *off / rt_float_ulp(rt_root_value(&arena, &at, exact.zero));
+        *off = -rt_root_value(&at, rt_exact_of((double)t));
+        *ulps = *off / rt_float_ulp(rt_root_value(&at, exact.zero));
     }
-    rt_exact_arena_clear(&arena);
+    rt_exact_rewind(mark);
     return finding;
 }

@@ -103,7 +103,7 @@ RT_TEST(a_tree_may_be_appended_under_any_transform) {
         OWNED_FOREST forest = {0};
         assert_ok(rt_csg_copy(&forest, &from.geometry.forest, from.geometry.csgs, &uneven, &moved, error));
         for (uint32_t i = 0; i < 200; i++) {
-            RtRay ray = random_ray(&random, i);
+            RtRay ray = tree_ray(&random, i);
             Hits first = hits_of(&g->forest, &g->csgs[0], &ray), wanted = hits_of(&forest, &moved, &ray);
             assert_true(same_hits(&first, &wanted));
             Hits second = hits_of(&g->forest, &g->csgs[1], &ray);

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Boxes, balls and support functions of every shape contain a thousand points of its surface, and touch
  * it. */
-#include "testing.h"
+#include "csg_testing.h"
 
-#include "core/base/random.h"
-#include "core/shape/geometry.h"
 #include "core/shape/solid_parts.h"
 
 enum { POINTS = 1000, OBJECTS = 40 };
@@ -233,7 +231,8 @@ RT_TEST(the_ball_of_a_polygon_of_many_vertices_is_that_of_its_circle) {
     for (int i = 0; i < MOST_POINTS; i++)
         circle[i] = rt_vec3((float)cos(i * 6.283185307179586 / MOST_POINTS),
                             (float)sin(i * 6.283185307179586 / MOST_POINTS), 0);
-    RtBall ball = rt_ball_of_points(circle, MOST_POINTS);
+    OWNED_OBJECT(g, polygon, circle, MOST_POINTS);
+    RtBall ball = rt_object_ball(&g, 0);
     assert_true(fabs(ball.radius - 1) < 1e-6 && rt_lengthd(ball.center) < 1e-6);
 }
 
@@ -285,9 +284,10 @@ static void add_octahedron(RtSolidSet *set, float far, uint32_t *solid) {
 RT_TEST(balls_are_larger_than_their_points_by_their_bound) {
     const float far = 125.0f / 64;
     const RtVec3 points[3] = {{{-far, 0, 0}}, {{far, 0, 0}}, {{0, 1, 0}}};
-    assert_larger(rt_ball_of_points(points, 3).radius, (double)far, 0x1p-50);
-    OWNED_OBJECT(g, cone, rt_vec3(0, 0, -100), 75, rt_vec3(0, 0, 100), 75);
-    assert_larger(rt_object_ball(&g, 0).radius, 125, 0x1p-50);
+    OWNED_OBJECT(triangle, triangle, points, NULL);
+    assert_larger(rt_object_ball(&triangle, 0).radius, (double)far, 0x1p-50);
+    OWNED_OBJECT(cone, cone, rt_vec3(0, 0, -100), 75, rt_vec3(0, 0, 100), 75);
+    assert_larger(rt_object_ball(&cone, 0).radius, 125, 0x1p-50);
     OWNED_SOLIDS set = {0};
     uint32_t mesh;
     add_octahedron(&set, far, &mesh);
@@ -299,17 +299,10 @@ RT_TEST(balls_are_larger_than_their_points_by_their_bound) {
 static void check_united(float x, double centered) {
     OWNED_GEOMETRY g = {0};
     OWNED_BUILDER b = {0};
-    RtCsgTerm term[2];
     double reach = 0;
-    for (int i = 0; i < 2; i++) {
-        uint32_t solid;
-        RtVec3 center = rt_vec3(x + (i ? 1.0f : -1.0f), 0, 0);
-        assert_ok(rt_solid_add_ellipsoid(&b.set, center, rt_vec3(1, 1, 1), &solid, error));
-        assert_ok(rt_csg_solid(&b, solid, 0, &term[i], error));
-        reach += rt_solid_ball(&b.set, solid).radius / 2;
-    }
-    assert_ok(rt_csg_combine(&b, RT_CSG_UNION, term[0], term[1], &term[0], error));
-    assert_ok(rt_geometry_add_csg(&g, &b, term[0], true, error));
+    RtCsgTerm left = ball(&b, rt_vec3(x - 1, 0, 0), 1, 0), right = ball(&b, rt_vec3(x + 1, 0, 0), 1, 0);
+    for (uint32_t i = 0; i < 2; i++) reach += rt_solid_ball(&b.set, i).radius / 2;
+    add_tree(&g, &b, join(&b, left, right));
     assert_ok(rt_geometry_finish(&g, error));
     double more = rt_object_ball(&g, 0).radius - (1 + reach), bound = 0x1p-48 * (1 + reach) + centered;
     assert_true(more >= within * bound && more <= 1.125 * bound);
@@ -320,16 +313,14 @@ static void check_crossed(void) {
     const float half[3] = {3, 4, 12};
     OWNED_GEOMETRY g = {0};
     OWNED_BUILDER b = {0};
-    RtCsgTerm all, bar;
+    RtCsgTerm all = 0;
     for (int a = 0; a < 3; a++) {
-        uint32_t solid;
         RtVec3 hi = rt_vec3(100, 100, 100);
         hi.at[a] = half[a];
-        assert_ok(rt_solid_add_box(&b.set, rt_scale(hi, -1), hi, &solid, error));
-        assert_ok(rt_csg_solid(&b, solid, 0, a ? &bar : &all, error));
-        if (a) assert_ok(rt_csg_combine(&b, RT_CSG_INTERSECTION, all, bar, &all, error));
+        RtCsgTerm bar = box(&b, rt_scale(hi, -1), hi, 0);
+        all = a ? meet(&b, all, bar) : bar;
     }
-    assert_ok(rt_geometry_add_csg(&g, &b, all, true, error));
+    add_tree(&g, &b, all);
     assert_ok(rt_geometry_finish(&g, error));
     assert_larger(rt_object_ball(&g, 0).radius, 13, 0x1p-48);
 }

@@ -182,7 +182,7 @@ static void check_identity(const char *const sides[2], uint64_t seed) {
         RtCsg one = compile_formula(&forest, &b, terms, sides[0]);
         RtCsg other = compile_formula(&forest, &b, terms, sides[1]);
         for (uint32_t i = 0; i < 400; i++) {
-            RtRay ray = random_ray(&random, i);
+            RtRay ray = tree_ray(&random, i);
             Hits expected = hits_of(&forest, &one, &ray), found = hits_of(&forest, &other, &ray);
             if (!same_hits(&expected, &found))
                 fail_msg("%s = %s, round %u, ray %u", sides[0], sides[1], round, i);

@@ -215,7 +215,7 @@ RT_TEST(rays_are_right_about_points) {
         m.root = random_term(&m.builder, &random, round % 8 == 0 ? 1 : 16, round % 2);
         m.tree = compile(&m.forest, &m.builder, m.root);
         for (uint32_t i = 0; i < 250; i++) {
-            RtRay ray = random_ray(&random, i);
+            RtRay ray = tree_ray(&random, i);
             check_ray(&m, &ray, &score);
         }
         rt_csg_forest_clear(&m.forest);

@@ -16,7 +16,7 @@ RT_TEST(tests_of_inner_nodes_change_no_bit) {
         assert_ok(rt_csg_compile(&forest, &b, root, true, &tested, error));
         assert_ok(rt_csg_compile(&forest, &b, root, false, &plain, error));
         for (uint32_t i = 0; i < 500; i++) {
-            RtRay ray = random_ray(&random, i);
+            RtRay ray = tree_ray(&random, i);
             if (i % 5 == 0) ray.tmin = 0.5f, ray.tmax = 1;
             RtPreparedRay prepared = prepare(&ray, &tested);
             float t = 0, expected = 0;
@@ -41,7 +41,7 @@ RT_TEST(a_tree_lies_within_its_extents) {
         RtVec3d direction = rt_random_direction(&random);
         double reach = rt_csg_support(&forest, &tree, direction);
         for (uint32_t i = 0; i < 200; i++) {
-            RtRay ray = random_ray(&random, i);
+            RtRay ray = tree_ray(&random, i);
             Hits hits = hits_of(&forest, &tree, &ray);
             for (uint32_t h = 0; h < hits.count; h++) {
                 RtVec3d p = rt_ray_point(&ray, hits.t[h]);
@@ -103,7 +103,7 @@ RT_TEST(a_tree_moved_by_powers_of_two_is_met_at_the_same_bits) {
         assert_ok(rt_csg_move(&b, root, &move, &moved, error));
         RtCsg here = compile(&forest, &b, root), there = compile(&forest, &b, moved);
         for (uint32_t i = 0; i < 400; i += 2) {
-            RtRay ray = random_ray(&random, i), same = ray;
+            RtRay ray = tree_ray(&random, i), same = ray;
             same.org = rt_add(ray.org, by);
             Hits expected = hits_of(&forest, &here, &ray), found = hits_of(&forest, &there, &same);
             if (!same_hits(&expected, &found)) fail_msg("round %u, ray %u", round, i);
@@ -126,7 +126,7 @@ RT_TEST(moving_the_tree_and_moving_the_ray_agree) {
         RtCsg here = compile(&forest, &b, root), there;
         assert_ok(rt_csg_copy(&forest, &forest, &here, &move, &there, error));
         for (uint32_t i = 1; i < 400; i += 2) {
-            RtRay ray = random_ray(&random, i), same = ray;
+            RtRay ray = tree_ray(&random, i), same = ray;
             same.org = rt_transform_point(&move, ray.org);
             same.dir = rt_sub(rt_transform_point(&move, rt_add(ray.org, ray.dir)), same.org);
             Hits expected = hits_of(&forest, &here, &ray), found = hits_of(&forest, &there, &same);
@@ -158,7 +158,7 @@ RT_TEST(a_copied_tree_is_the_same_tree) {
             assert_true(from->material == to->material && from->subtracted == to->subtracted);
         }
         for (uint32_t i = 0; i < 100; i++) {
-            RtRay ray = random_ray(&random, i);
+            RtRay ray = tree_ray(&random, i);
             Hits expected = hits_of(&forest, &tree, &ray), found = hits_of(&other, &copy, &ray);
             assert_true(same_hits(&expected, &found));
         }

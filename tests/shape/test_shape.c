@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* shape/: hits, normals and rejected input of every shape, against results known by hand. */
-#include "shape_testing.h"
+#include "crossings_testing.h"
+#include "testing.h"
 
 /* ---- hits ---- */
 
@@ -17,7 +18,7 @@ typedef struct Case {
 static void check(RtGeometry *g, const Case *cases, size_t count) {
     assert_ok(rt_geometry_finish(g, error));
     for (size_t i = 0; i < count; i++) {
-        RtRay ray = make_ray(cases[i].org, cases[i].dir);
+        RtRay ray = ray_along(cases[i].org, cases[i].dir);
         float t = NAN;
         bool met = hit(g, 0, &ray, &t);
         if (met == !isnan(cases[i].t) && (!met || t == cases[i].t)) continue;
@@ -46,7 +47,7 @@ RT_TEST(unit_normals_are_kept_bit_for_bit_and_others_made_unit) {
 
 RT_TEST(the_lecture_ray_meets_the_unit_sphere_at_9_and_11) {
     OWNED_OBJECT(g, sphere, rt_vec3(0, 0, 0), 1);
-    RtRay ray = make_ray(rt_vec3(0, 0, 10), rt_vec3(0, 0, -1));
+    RtRay ray = ray_along(rt_vec3(0, 0, 10), rt_vec3(0, 0, -1));
     float t;
     assert_true(hit(&g, 0, &ray, &t));
     assert_true(t == 9.0f);

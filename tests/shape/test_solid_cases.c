@@ -13,7 +13,7 @@ typedef struct Case {
 
 static void check_cases(const RtSolidSet *set, uint32_t index, const Case *cases, size_t count) {
     for (size_t i = 0; i < count; i++) {
-        RtRay ray = make_ray(cases[i].org, cases[i].dir);
+        RtRay ray = ray_along(cases[i].org, cases[i].dir);
         List list = cross(set, index, &ray);
         uint32_t expected = 0;
         while (!isnan(cases[i].t[expected])) expected++;
@@ -136,7 +136,7 @@ RT_TEST(a_cylinder_is_entered_by_cap_or_side) {
     uint32_t cylinder;
     assert_ok(rt_solid_add_frustum(&set, rt_vec3(0, 0, 0), 2, rt_vec3(4, 0, 0), 2, &cylinder, error));
     CHECK(&set, cylinder, cases);
-    RtRay ray = make_ray(rt_vec3(-2, 0, 0), rt_vec3(1, 0.5f, 0));
+    RtRay ray = ray_along(rt_vec3(-2, 0, 0), rt_vec3(1, 0.5f, 0));
     List list = cross(&set, cylinder, &ray);
     assert_int_equal(list.at[0].face, 1);
     assert_int_equal(list.at[1].face, 0);
@@ -162,7 +162,7 @@ RT_TEST(a_torus_has_a_hole) {
     CHECK(&set, torus, cases);
 
     /* In the tube, touching the hole's rim on the way: two spans that touch are one. */
-    RtRay ray = make_ray(rt_vec3(1, -8, 1), rt_vec3(0, 1, 0));
+    RtRay ray = ray_along(rt_vec3(1, -8, 1), rt_vec3(0, 1, 0));
     List list = cross(&set, torus, &ray);
     assert_int_equal(list.count, 2);
     assert_float_equal(list.at[0].t, 8 - sqrtf(8), 1e-6f);

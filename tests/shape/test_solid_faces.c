@@ -53,7 +53,7 @@ RT_TEST(a_cube_of_triangles_is_a_box_even_at_edges_and_corners) {
     for (uint32_t from = 0; from < 7 * 7 * 7; from++) {
         for (uint32_t along = 0; along < 5 * 5 * 5; along++) {
             if (along == 62) continue; /* nowhere */
-            RtRay ray = make_ray(lattice(from, 7), lattice(along, 5));
+            RtRay ray = ray_along(lattice(from, 7), lattice(along, 5));
             List of_box = cross(&set, box, &ray), of_mesh = cross(&set, mesh, &ray);
             bool in_face = false;
             for (int a = 0; a < 3; a++) in_face |= ray.dir.at[a] == 0 && fabsf(ray.org.at[a]) == 2;
@@ -101,7 +101,7 @@ RT_TEST(a_mesh_may_overlap_and_touch_itself_and_be_hollow) {
         for (uint32_t from = 0; from < 5 * 5 * 5; from++) {
             for (uint32_t along = 0; along < 5 * 5 * 5; along++) {
                 if (along == 62) continue;
-                RtRay ray = make_ray(lattice(from, 5), lattice(along, 5));
+                RtRay ray = ray_along(lattice(from, 5), lattice(along, 5));
                 check_line(&model, &set, &ray);
             }
         }
@@ -125,7 +125,7 @@ RT_TEST(lines_along_edges_and_faces_of_a_turned_mesh_keep_to_it) {
                        c = triangles[i].v[(k + 2) % 3];
                 RtVec3 dir = rt_add(rt_sub(b, a), rt_scale(rt_sub(c, a), (float)(k / 3) / 4));
                 float back = rt_random_between(&random, 0, 3);
-                RtRay ray = make_ray(rt_add(a, rt_scale(dir, -back)), dir);
+                RtRay ray = ray_along(rt_add(a, rt_scale(dir, -back)), dir);
                 List list = check_line(cube, &set, &ray);
                 for (uint32_t n = 0; n < list.count; n++)
                     assert_true(fabsl(value_at(cube, &ray, (long double)list.at[n].t)) < 1e-5L);
@@ -184,7 +184,7 @@ RT_TEST(faces_in_one_plane_are_met_at_the_same_bits) {
             RtVec3d aim = rt_transform_pointd(&move, rt_widen(rt_random_point(&random, 1)));
             RtVec3d dir = rt_random_direction(&random), up = {{move.m[0][2], move.m[1][2], move.m[2][2]}};
             if (fabs(rt_dotd(dir, up)) < 0.5 * rt_lengthd(up)) continue; /* too flat to go through caps */
-            RtRay ray = make_ray(rt_narrow(rt_add_scaledd(aim, dir, -2 * (double)size)), rt_narrow(dir));
+            RtRay ray = ray_along(rt_narrow(rt_add_scaledd(aim, dir, -2 * (double)size)), rt_narrow(dir));
             List box = cross(&set, at[0], &ray), next = cross(&set, at[1], &ray),
                  cylinder = cross(&set, at[2], &ray);
             List frustum = cross(&set, at[3], &ray), half = cross(&set, at[4], &ray);
@@ -285,7 +285,7 @@ RT_TEST(the_hull_of_the_corners_of_a_box_is_the_box) {
     RtBox own = {lo, hi};
     assert_memory_equal(&set.solids[hull].box, &own, sizeof own);
     for (int i = 0; i < 1000; i++) {
-        RtRay ray = make_ray(rt_random_point(&random, 2), rt_vec3(0, 0, 0));
+        RtRay ray = ray_along(rt_random_point(&random, 2), rt_vec3(0, 0, 0));
         ray.dir = rt_sub(corners[i % 10], ray.org);
         List a = cross(&set, box, &ray), b = cross(&set, hull, &ray);
         assert_same_places(&a, &b, &ray);
@@ -354,7 +354,7 @@ RT_TEST(hulls_of_random_points_hold_what_is_between_them) {
         assert_true(rt_box_contains(rt_box_widened(box, 1e-5), set.solids[hull].box));
         for (int i = 0; i < 40; i++) {
             RtVec3 dir = rt_narrow(rt_random_direction(&random));
-            RtRay ray = make_ray(rt_random_point(&random, 10), dir);
+            RtRay ray = ray_along(rt_random_point(&random, 10), dir);
             List list = cross(&set, hull, &ray);
             bool inside = list.count == 2 && list.at[0].t < 0 && list.at[1].t > 0;
             Point p = {(long double)ray.org.x, (long double)ray.org.y, (long double)ray.org.z};

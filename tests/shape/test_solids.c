@@ -223,7 +223,7 @@ RT_TEST(normals_point_out) {
                 RtVec3d n = rt_solid_normal(&set, models[i].index, list.at[c].face, p);
                 assert_near(rt_lengthd(n), 1, 1e-12);
                 for (int a = 0; a < 3; a++) {
-                    RtRay probe = make_ray(rt_narrow(p), rt_vec3(a == 0, a == 1, a == 2));
+                    RtRay probe = ray_along(rt_narrow(p), rt_vec3(a == 0, a == 1, a == 2));
                     gradient.at[a] =
                         (double)(value_at(&models[i], &probe, 1e-3L) - value_at(&models[i], &probe, -1e-3L));
                 }

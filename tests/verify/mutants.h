@@ -6,21 +6,19 @@
 #define RT_TESTS_MUTANTS_H
 
 #include "accel/kernel.h"
-#include "core/base/memory.h"
-#include "verify/failure.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* X(CONSTANT, name, what is wrong): */
 #define MUTANTS(X)                                                                                           \
-    X(UNPADDED_BOX, "unpadded boxes", "boxes are tested by the bare ray, the thickness left out")            \
-    X(EARLY_EXIT, "early exit", "the grid stops at the first hit, though it lies beyond the voxel")          \
-    X(PRUNED_TIE, "pruned ties", "a box entered at the best t is skipped: >= instead of >")                  \
-    X(DEPTH_BUFFER, "z-buffer nearest", "the nearest by depth of 24 bits, not by t")                         \
-    X(PARTIAL_OCCLUDER, "partial occluder", "what lies behind an object is culled, though it leaks past it") \
-    X(ABSOLUTE_EPSILON, "absolute epsilon", "Moeller and Trumbore's determinant below 1e-6 is parallel")     \
-    X(IGNORED_START, "ignored start", "any hit from t = 0 on, not from tmin; judged by verdicts")
+    X(UNPADDED_BOX, "unpadded-boxes", "boxes are tested by the bare ray, the thickness left out")            \
+    X(EARLY_EXIT, "early-exit", "the grid stops at the first hit, though it lies beyond the voxel")          \
+    X(PRUNED_TIE, "pruned-ties", "a box entered at the best t is skipped: >= instead of >")                  \
+    X(DEPTH_BUFFER, "z-buffer-nearest", "the nearest by depth of 24 bits, not by t")                         \
+    X(PARTIAL_OCCLUDER, "partial-occluder", "what lies behind an object is culled, though it leaks past it") \
+    X(ABSOLUTE_EPSILON, "absolute-epsilon", "Moeller and Trumbore's determinant below 1e-6 is parallel")     \
+    X(IGNORED_START, "ignored-start", "any hit from t = 0 on, not from tmin; judged by verdicts")
 
 typedef enum MutantKind {
 #define MUTANT_ENUM(CONSTANT, name, what) CONSTANT,
@@ -29,29 +27,25 @@ typedef enum MutantKind {
         MUTANT_COUNT
 } MutantKind;
 
-typedef struct MutantRecipe {
-    MutantKind kind;
-    bool broken; /* false: the control */
-} MutantRecipe;
-
 typedef struct Mutant {
     RtAccel base;
-    MutantRecipe recipe;
+    MutantKind kind;
+    bool broken; /* false: the control */
 } Mutant;
 
 /* ---- boxes ---- */
 
 static bool box_is_skipped(const Mutant *m, const RtBox *box, const RtPreparedRay *ray, float limit) {
-    MutantKind kind = m->recipe.kind;
+    MutantKind kind = m->kind;
     float enter;
-    if (kind == UNPADDED_BOX && m->recipe.broken) {
+    if (kind == UNPADDED_BOX && m->broken) {
         RtPreparedRay bare = *ray;
         memcpy(bare.org_near, ray->org, sizeof bare.org_near);
         memcpy(bare.org_far, ray->org, sizeof bare.org_far);
         return !rt_box_hit(box, &bare, limit, &enter);
     }
     if (!rt_box_hit(box, ray, limit, &enter)) return true;
-    return kind == PRUNED_TIE && m->recipe.broken && enter >= limit;
+    return kind == PRUNED_TIE && m->broken && enter >= limit;
 }
 
 /* From the last object to the first, so that of two at the same t the one tested later counts. */
@@ -110,7 +104,7 @@ static void search_grid(const Mutant *m, const RtPreparedRay *ray, bool any, RtH
         for (uint32_t id = 0; id < g->object_count; id++) {
             if (boxes_meet(&box, &g->boxes[id]) && rt_test_object(g, id, ray, any, best, tally)) return;
         }
-        if (m->recipe.broken && best->object != RT_NO_OBJECT) return;
+        if (m->broken && best->object != RT_NO_OBJECT) return;
     }
 }
 
@@ -119,7 +113,7 @@ static void search_grid(const Mutant *m, const RtPreparedRay *ray, bool any, RtH
 static void search_depths(const Mutant *m, const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     const RtGeometry *g = &m->base.scene->geometry;
     double least = HUGE_VAL, unit = (double)rt_thickness(rt_vec3_load(ray->org), &g->box) * 0x1p20 * 0x1p-24;
-    if (any || !m->recipe.broken) {
+    if (any || !m->broken) {
         rt_test_all(g, ray, any, best, tally);
         return;
     }
@@ -188,7 +182,7 @@ static void search_light(const Mutant *m, const RtPreparedRay *ray, bool any, Rt
     unsigned cells = octants_of(&origin, light);
     for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
         unsigned shared = octants_of(&scene->geometry.boxes[id], light) & cells;
-        if (!shared || (m->recipe.broken && lies_behind(&scene->geometry, id, light, shared))) continue;
+        if (!shared || (m->broken && lies_behind(&scene->geometry, id, light, shared))) continue;
         if (rt_test_object(&scene->geometry, id, ray, any, best, tally)) return;
     }
 }
@@ -206,7 +200,7 @@ static void search_triangles(const Mutant *m, const RtPreparedRay *ray, bool any
                              RtTally *tally) {
     const RtGeometry *g = &m->base.scene->geometry;
     for (uint32_t id = 0; id < g->object_count; id++) {
-        if (m->recipe.broken && rt_ref_shape(g->objects[id]) == RT_SHAPE_TRIANGLE &&
+        if (m->broken && rt_ref_shape(g->objects[id]) == RT_SHAPE_TRIANGLE &&
             fabs(determinant(&g->triangles[rt_ref_index(g->objects[id])], ray)) < 1e-6) {
             continue;
         }
@@ -218,7 +212,7 @@ static void search_triangles(const Mutant *m, const RtPreparedRay *ray, bool any
 
 static void search_all(const Mutant *m, const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     RtPreparedRay whole = *ray;
-    if (any && m->recipe.broken) whole.tmin = 0;
+    if (any && m->broken) whole.tmin = 0;
     rt_test_all(&m->base.scene->geometry, &whole, any, best, tally);
 }
 
@@ -227,7 +221,7 @@ static void search_all(const Mutant *m, const RtPreparedRay *ray, bool any, RtHi
 static void search(const Mutant *m, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
                    RtTally *tally) {
     (void)scratch;
-    switch (m->recipe.kind) {
+    switch (m->kind) {
     case UNPADDED_BOX:
     case PRUNED_TIE: search_boxes(m, ray, any, best, tally); break;
     case EARLY_EXIT: search_grid(m, ray, any, best, tally); break;
@@ -241,21 +235,32 @@ static void search(const Mutant *m, void *scratch, const RtPreparedRay *ray, boo
 
 RT_DEFINE_KERNELS(Mutant, search)
 
-static const RtAccelOps mutant_ops = {.name = "mutant", .bytes = sizeof(Mutant), RT_KERNEL_OPS};
+/* The accelerators "mutant:kind=early-exit", with "broken=off" the control. */
+static const RtParam mutant_params[] = {
+#define MUTANT_CHOICE(CONSTANT, name, what) "|" name
+    {"kind", RT_CHOICE("unpadded-boxes", &MUTANTS(MUTANT_CHOICE)[1]), "the fault", ""},
+#undef MUTANT_CHOICE
+    {"broken", RT_FLAG("on"), "whether it has the fault", ""},
+};
 
-static RtStatus build_mutant(const void *context, const RtScene *scene, int threads, RtAccel **out,
-                             RtError *error) {
-    const RtBuild what = {.scene = scene, .threads = threads};
-    RT_TRY(rt_accel_build_layer(&mutant_ops, &what, NULL, out, error));
-    Mutant *mutant = (Mutant *)*out;
-    mutant->recipe = *(const MutantRecipe *)context;
-    mutant->base.exact = mutant->recipe.kind != IGNORED_START;
+static RtStatus build_mutant(RtAccel *accel, const RtBuild *what, RtError *error) {
+    (void)error;
+    Mutant *mutant = (Mutant *)accel;
+    mutant->kind = (MutantKind)what->values[0].choice;
+    mutant->broken = what->values[1].flag;
+    accel->exact = mutant->kind != IGNORED_START;
     return RT_OK;
 }
 
-/* `recipe` stays the caller's. */
-static inline RtAccelBuilder builder_of_mutant(const MutantRecipe *recipe) {
-    return (RtAccelBuilder){build_mutant, recipe, 1};
-}
+static const RtAccelOps mutant_ops = {
+    .name = "mutant",
+    .bytes = sizeof(Mutant),
+    RT_PARAMS_OF(mutant_params),
+    .build = build_mutant,
+    RT_KERNEL_OPS,
+};
+
+#define UNPADDED "mutant:kind=unpadded-boxes"
+#define PADDED   "mutant:kind=unpadded-boxes,broken=off"
 
 #endif

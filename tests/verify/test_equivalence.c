@@ -3,6 +3,7 @@
  * are distinguished from errors. */
 #include "equivalence_testing.h"
 
+#include "accel/kernel.h"
 #include "measure/measure.h"
 #include "render/frame.h"
 #include "verify/failure.h"
@@ -19,44 +20,30 @@ typedef struct Liar {
 } Liar;
 
 enum { RAYS = 5000, LAST = RAYS - 1 };
-static RtRay rays[RAYS];
-static RtAccelOps liar_ops;
-
-static void lie_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked, size_t count,
-                        RtHit *hits) {
-    const Liar *liar = (const Liar *)accel;
-    liar->truth.accel->ops->nearest(liar->truth.accel, scratch, asked, count, hits);
-    for (size_t i = 0; i < count; i++) {
-        if (liar->lie == T_IN_TIMED && &asked[i] == &rays[1234]) hits[i].t = nextafterf(hits[i].t, 0);
-        if (liar->lie == LOST_LAST_RAY && &asked[i] == &rays[LAST]) hits[i] = RT_MISS;
-    }
-}
-
-static void lie_nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked,
-                                size_t count, RtHit *hits, RtTally *tallies) {
+static RtRay asked_rays[RAYS];
+RT_KERNEL void lie(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked, size_t count,
+                   RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
     (void)tallies;
     const Liar *liar = (const Liar *)accel;
-    liar->truth.accel->ops->nearest(liar->truth.accel, scratch, asked, count, hits);
+    const RtAccel *truth = liar->truth.accel;
+    if (any) {
+        truth->ops->occluded(truth, scratch, asked, count, occluders);
+        if (liar->lie == BLOCKED_IN_STREAMS_OF_64 && !counted && count == 64)
+            occluders[63] = occluders[63] == RT_NO_OBJECT ? 0 : RT_NO_OBJECT;
+        return;
+    }
+    truth->ops->nearest(truth, scratch, asked, count, hits);
     for (size_t i = 0; i < count; i++) {
-        if (liar->lie == ID_IN_COUNTED && &asked[i] == &rays[77]) hits[i].object ^= 1;
+        if (liar->lie == T_IN_TIMED && !counted && &asked[i] == &asked_rays[1234])
+            hits[i].t = nextafterf(hits[i].t, 0);
+        if (liar->lie == LOST_LAST_RAY && !counted && &asked[i] == &asked_rays[LAST]) hits[i] = RT_MISS;
+        if (liar->lie == ID_IN_COUNTED && counted && &asked[i] == &asked_rays[77]) hits[i].object ^= 1;
     }
 }
 
-static void lie_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked, size_t count,
-                         uint32_t *occluders) {
-    const Liar *liar = (const Liar *)accel;
-    liar->truth.accel->ops->occluded(liar->truth.accel, scratch, asked, count, occluders);
-    if (liar->lie == BLOCKED_IN_STREAMS_OF_64 && count == 64) {
-        occluders[63] = occluders[63] == RT_NO_OBJECT ? 0 : RT_NO_OBJECT;
-    }
-}
+RT_DEFINE_STREAM_KERNELS(lie)
 
-static void lie_occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked,
-                                 size_t count, uint32_t *occluders, RtTally *tallies) {
-    (void)tallies;
-    const Liar *liar = (const Liar *)accel;
-    liar->truth.accel->ops->occluded(liar->truth.accel, scratch, asked, count, occluders);
-}
+static const RtAccelOps liar_ops = {.name = "liar", .bytes = sizeof(Liar), RT_KERNEL_OPS};
 
 typedef struct Stage {
     RtScene scene;
@@ -70,22 +57,17 @@ static int set_up(void **state) {
     stage.scene = open_family(scene_family("uniform"), 3);
     assert_ok(rt_accel_open("brute", &stage.scene, &stage.brute, error));
     assert_ok(rt_query_init(&stage.liar.truth, stage.brute, error));
-    rt_ray_family_fill(0, &stage.liar.truth, 3, 0, RAYS, rays);
+    rt_ray_family_fill(0, &stage.liar.truth, 3, 0, RAYS, asked_rays);
     /* The rays that are lied about hit something. */
     const size_t needed[] = {77, 1234, LAST};
     for (size_t i = 0; i < 3; i++) {
         RtHit hit = RT_MISS;
         for (uint64_t k = RAYS + 100 * i; hit.object == RT_NO_OBJECT; k++) {
-            rt_ray_family_fill(0, &stage.liar.truth, 3, k, 1, &rays[needed[i]]);
-            rt_nearest(&stage.liar.truth, &rays[needed[i]], 1, &hit, NULL);
+            rt_ray_family_fill(0, &stage.liar.truth, 3, k, 1, &asked_rays[needed[i]]);
+            rt_nearest(&stage.liar.truth, &asked_rays[needed[i]], 1, &hit, NULL);
         }
     }
-    assert_ok(rt_reference_init(&stage.reference, stage.brute, rays, RAYS, 0, error));
-    liar_ops = *stage.brute->ops;
-    liar_ops.nearest = lie_nearest;
-    liar_ops.nearest_counted = lie_nearest_counted;
-    liar_ops.occluded = lie_occluded;
-    liar_ops.occluded_counted = lie_occluded_counted;
+    assert_ok(rt_reference_init(&stage.reference, stage.brute, asked_rays, RAYS, 0, error));
     stage.liar.base = *stage.brute;
     stage.liar.base.ops = &liar_ops;
     *state = &stage;
@@ -154,7 +136,7 @@ RT_TEST(the_last_ray_counts_too) {
     assert_int_equal(json_integer_value(json_object_get(row, "wrong")), 1);
     json_t *wrong = json_object_get(row, "first_wrong");
     const char *x = json_string_value(json_array_get(json_object_get(wrong, "org"), 0));
-    assert_true(strtof(x, NULL) == rays[LAST].org.x);
+    assert_true(strtof(x, NULL) == asked_rays[LAST].org.x);
 }
 
 RT_TEST(an_accelerator_that_is_not_exact_is_judged_by_verdicts) {
@@ -174,25 +156,16 @@ static RtStatus check_of_liar(const RtAccel *accel, RtError *error) {
     return rt_fail(error, RT_NO_MEMORY, "went wrong while tracing");
 }
 
-/* An accelerator that answers like brute, and then says that this was luck. */
-static RtStatus build_unlucky(const void *context, const RtScene *scene, int threads, RtAccel **out,
-                              RtError *error) {
-    static RtAccelOps ops;
-    (void)context;
-    RtSpec spec;
-    RT_TRY(rt_spec_parse("brute", &spec, error));
-    RT_TRY(rt_accel_build(&spec, scene, threads, out, error));
-    ops = *(*out)->ops;
-    ops.check = check_of_liar;
-    (*out)->ops = &ops;
-    return RT_OK;
-}
-
 #define assert_went_wrong(expr) assert_fails_at(expr, RT_NO_MEMORY, "went wrong while tracing", "")
 
 RT_TEST(what_goes_wrong_while_tracing_is_a_status_of_all_who_trace) {
     Stage *stage = *state;
-    OWNED_ACCEL RtAccel *accel;
+    static RtAccelOps unlucky; /* answers like brute, and then says that this was luck */
+    unlucky = *stage->brute->ops;
+    unlucky.name = "unlucky";
+    unlucky.check = check_of_liar;
+    assert_ok(rt_accel_register(&unlucky, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(&stage->scene, "unlucky");
     RtEquivalence equivalence;
     RtReference reference;
     RtAnswer reply;
@@ -200,19 +173,17 @@ RT_TEST(what_goes_wrong_while_tracing_is_a_status_of_all_who_trace) {
     RtCount count;
     static RtHit hits[RAYS];
     static RtRay more[64];
-    const RtAccelBuilder builder = {build_unlucky, NULL, 0};
-    const RtRaySet set = {.kind = RT_RAY_RANDOM, .count = RAYS, .rays = rays};
-    const RtFailure question = {.rays = rays, .count = 1, .stream = 1};
+    const RtRaySet set = {.kind = RT_RAY_RANDOM, .count = RAYS, .rays = asked_rays};
+    const RtFailure question = {.spec = "unlucky", .rays = asked_rays, .count = 1, .stream = 1};
     const RtVerifyRays wanted = {.count = 64, .seed = 1, .threads = 1};
     const RtFrameOptions options = {.depth = 1, .threads = 1};
     double seconds, wall;
-    assert_ok(rt_accel_builder_run(&builder, &stage->scene, &accel, error));
     RtTimed timed = {.accel = accel, .set = &set, .seconds = &seconds, .wall = &wall};
     const RtTiming timing = {.rounds = {.rounds = 1, .most = 1}, .threads = 1};
     uint32_t done;
     assert_went_wrong(rt_equivalence_check(&stage->reference, accel, 1, &equivalence, error));
-    assert_went_wrong(rt_reference_init(&reference, accel, rays, RAYS, 1, error));
-    assert_went_wrong(rt_failure_ask(&question, &stage->scene, builder, &reply, error));
+    assert_went_wrong(rt_reference_init(&reference, accel, asked_rays, RAYS, 1, error));
+    assert_went_wrong(rt_failure_ask(&question, &stage->scene, &reply, error));
     assert_went_wrong(rt_frame_trace(&frame, accel, &options, error));
     assert_went_wrong(rt_measure_answers(accel, &set, 1, hits, error));
     assert_went_wrong(rt_measure_count(accel, &set, stage->reference.hits, 1, &count, error));

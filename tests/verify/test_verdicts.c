@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Verdicts from both sides: careful arithmetic is never wrong, and what passes a border by four times delta
  * is always wrong. Scenes are large, small, flat, and far from the origin of coordinates. */
+#include "csg_testing.h"
 #include "equivalence_testing.h"
 
 #include "random_testing.h"
+
+#include "accel/kernel.h"
 
 #include <inttypes.h>
 
@@ -213,15 +216,10 @@ static void add_one_of_each_shape(RtGeometry *g, const Place *p, RtRandom *rando
                                    place(p, rt_vec3(1, 2, 1)), p->scale * 0.125f, error));
     OWNED_BUILDER builder = {0};
     uint32_t solid;
-    RtCsgTerm box, ball, tree;
     RtVec3 lo = place(p, rt_vec3(-1, -1, -1)), hi = place(p, rt_vec3(0.5f, 0.5f, 0.5f));
     RtVec3 radii = rt_vec3(p->scale, p->scale, p->scale * 0.5f);
-    assert_ok(rt_solid_add_box(&builder.set, lo, hi, &solid, error));
-    assert_ok(rt_csg_solid(&builder, solid, 0, &box, error));
     assert_ok(rt_solid_add_ellipsoid(&builder.set, hi, radii, &solid, error));
-    assert_ok(rt_csg_solid(&builder, solid, 0, &ball, error));
-    assert_ok(rt_csg_combine(&builder, RT_CSG_DIFFERENCE, box, ball, &tree, error));
-    assert_ok(rt_geometry_add_csg(g, &builder, tree, true, error));
+    add_tree(g, &builder, cut(&builder, box(&builder, lo, hi, 0), term_of(&builder, solid)));
     assert_ok(rt_geometry_finish(g, error));
 }
 
@@ -358,61 +356,26 @@ RT_TEST(answers_across_a_border_at_four_times_delta_are_wrong) {
 /* Brute force over the first `known` objects. */
 typedef struct Ignorant {
     RtAccel base;
-    RtQuery truth;
     uint32_t known;
 } Ignorant;
 
-static void forget(const Ignorant *self, const RtRay *rays, size_t count, RtHit *hits) {
-    const RtGeometry *g = &self->base.scene->geometry;
-    for (size_t i = 0; i < count; i++) {
-        RtPreparedRay ray;
-        float t;
-        hits[i] = RT_MISS;
-        rt_hit_ray(&ray, g, &rays[i], NULL);
-        for (uint32_t id = 0; id < self->known; id++) {
-            if (rt_object_hit(g, id, &ray, &t, NULL) && t < hits[i].t) hits[i] = (RtHit){t, id};
-        }
+static void search_known(const Ignorant *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
+                         RtTally *tally) {
+    (void)scratch;
+    for (uint32_t id = 0; id < self->known; id++) {
+        if (rt_test_object(&self->base.scene->geometry, id, ray, any, best, tally)) return;
     }
 }
 
-static void ignorant_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             RtHit *hits) {
-    (void)scratch;
-    forget((const Ignorant *)accel, rays, count, hits);
-}
+RT_DEFINE_KERNELS(Ignorant, search_known)
 
-static void ignorant_nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
-                                     size_t count, RtHit *hits, RtTally *tallies) {
-    (void)scratch, (void)tallies;
-    forget((const Ignorant *)accel, rays, count, hits);
-}
-
-static void ignorant_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                              uint32_t *occluders) {
-    (void)scratch;
-    for (size_t i = 0; i < count; i++) {
-        RtHit hit;
-        forget((const Ignorant *)accel, &rays[i], 1, &hit);
-        occluders[i] = hit.object;
-    }
-}
-
-static void ignorant_occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
-                                      size_t count, uint32_t *occluders, RtTally *tallies) {
-    (void)tallies;
-    ignorant_occluded(accel, scratch, rays, count, occluders);
-}
+static const RtAccelOps ignorant_ops = {.name = "ignorant", .bytes = sizeof(Ignorant), RT_KERNEL_OPS};
 
 static RtEquivalence check_ignorant(const FamilyBench *bench, uint32_t known, bool absolute,
                                     RtCertain *certain) {
     RtEquivalence result;
-    RtAccelOps ops = *bench->brute->ops;
-    ops.nearest = ignorant_nearest;
-    ops.nearest_counted = ignorant_nearest_counted;
-    ops.occluded = ignorant_occluded;
-    ops.occluded_counted = ignorant_occluded_counted;
     Ignorant liar = {.base = *bench->brute, .known = known};
-    liar.base.ops = &ops;
+    liar.base.ops = &ignorant_ops;
     liar.base.exact = false;
     liar.base.absolute = absolute;
     assert_ok(rt_equivalence_check(&bench->reference, &liar.base, 1, &result, error));

@@ -14,7 +14,6 @@
 
 #define OUT RT_BINARY_DIR "/test_verify.out"
 
-static const MutantRecipe unpadded = {UNPADDED_BOX, true}, padded = {UNPADDED_BOX, false};
 static const char *const scenes[] = {"family:kind=plane,seed=1", "random:n=30,shape=mixed"};
 
 static int rows_seen, scenes_worked_on;
@@ -61,8 +60,7 @@ static json_t *verify_as(RtVerify work, uint64_t rays, int threads, const char *
 
 /* Verifies grid and a mutant on both scenes. */
 static json_t *verify(const char *folder, int threads, RtStart start) {
-    static const RtVerifySpec specs[] = {{"grid", true, true, {NULL, NULL, 0}},
-                                         {"unpadded", true, true, {build_mutant, &unpadded, 0}}};
+    static const RtVerifySpec specs[] = {{"grid", true, true}, {UNPADDED, true, true}};
     const RtVerify work = {
         .scenes = scenes, .scene_count = 2, .specs = specs, .spec_count = 2, .start = start};
     return verify_as(work, 6000, threads, folder);
@@ -103,11 +101,13 @@ RT_TEST(a_failure_can_be_replayed_until_it_is_mended) {
     OWNED(rt_replay_clear) RtReplay replay;
     assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, 1)), error));
     assert_string_equal(replay.scene_spec, scenes[0]);
-    assert_string_equal(replay.accel_spec, "unpadded");
+    assert_string_equal(replay.failure.spec, UNPADDED);
     for (int shrunk = 0; shrunk < 2; shrunk++) {
         RtAnswer broken, mended;
-        assert_ok(rt_replay_ask(&replay, builder_of_mutant(&unpadded), shrunk, &broken, error));
-        assert_ok(rt_replay_ask(&replay, builder_of_mutant(&padded), shrunk, &mended, error));
+        RtReplay other = replay;
+        other.failure.spec = PADDED;
+        assert_ok(rt_replay_ask(&replay, shrunk, &broken, error));
+        assert_ok(rt_replay_ask(&other, shrunk, &mended, error));
         assert_true(broken.wrong);
         assert_false(mended.wrong);
     }
@@ -147,7 +147,7 @@ RT_TEST(threads_and_interruptions_change_no_byte) {
     /* They differ in the folder of the replay files alone. */
     for (char *at; (at = strstr(a, OUT "/a"));) at[strlen(OUT) + 1] = 'b';
     assert_string_equal(a, b);
-    assert_same_file("0002-family-kind-plane-seed-1-unpadded.json", OUT "/a", OUT "/b");
+    assert_same_file("0002-family-kind-plane-seed-1-mutant-kind-unpadded-boxes.json", OUT "/a", OUT "/b");
     json_decref(verify(OUT "/b", 0, RT_START_RESUME));
     assert_int_equal(scenes_worked_on, 0);
 }
@@ -160,14 +160,14 @@ RT_TEST(each_scene_is_opened_once) {
 
 static int threads_of_build;
 
-static RtStatus build_noting_threads(const void *context, const RtScene *scene, int threads, RtAccel **out,
-                                     RtError *error) {
-    threads_of_build = threads;
-    return build_mutant(context, scene, threads, out, error);
+static RtStatus build_noting_threads(RtAccel *accel, const RtBuild *what, RtError *error) {
+    (void)accel, (void)error;
+    threads_of_build = what->threads;
+    return RT_OK;
 }
 
 RT_TEST(accelerators_are_built_on_the_threads_of_the_run) {
-    const RtVerifySpec spec = {"noting", true, true, {build_noting_threads, &padded, 0}};
+    const RtVerifySpec spec = {"noting", true, true};
     for (int threads = 1; threads <= 3; threads += 2) {
         json_decref(verify_spec(&spec, scenes, 1, 100, threads, NULL));
         assert_int_equal(threads_of_build, threads);
@@ -191,7 +191,7 @@ static void count_notice(void *context, const char *message) {
 }
 
 RT_TEST(a_wrong_answer_is_shown_though_its_replay_file_cannot_be_written) {
-    const RtVerifySpec spec = {"unpadded", true, true, {build_mutant, &unpadded, 0}};
+    const RtVerifySpec spec = {UNPADDED, true, true};
     const RtVerifyObserver counting = {on_doing, on_row, count_notice, NULL};
     const RtVerify work = {.scenes = scenes,
                            .scene_count = 1,
@@ -201,7 +201,8 @@ RT_TEST(a_wrong_answer_is_shown_though_its_replay_file_cannot_be_written) {
                            .folder = OUT "/u",
                            .start = RT_START_ANEW};
     json_auto_t *rows;
-    assert_ok(rt_directory_create(OUT "/u/0001-family-kind-plane-seed-1-unpadded.json", error));
+    assert_ok(
+        rt_directory_create(OUT "/u/0001-family-kind-plane-seed-1-mutant-kind-unpadded-boxes.json", error));
     rows_seen = notices = 0;
     assert_ok(rt_verify_run(&work, &counting, &rows, error));
     const json_t *row = json_array_get(rows, 0);
@@ -213,7 +214,7 @@ RT_TEST(a_wrong_answer_is_shown_though_its_replay_file_cannot_be_written) {
 /* Only its first failure is shrunk; the next one is kept with its whole scene. */
 RT_TEST(an_accelerator_has_one_failure_shrunk) {
     const char *const both[] = {scenes[0], "family:kind=axis-aligned,seed=1"};
-    const RtVerifySpec spec = {"unpadded", true, true, {build_mutant, &unpadded, 0}};
+    const RtVerifySpec spec = {UNPADDED, true, true};
     json_auto_t *rows = verify_spec(&spec, both, 2, 6000, 0, OUT "/g");
     for (size_t i = 0; i < 2; i++) {
         OWNED(rt_replay_clear) RtReplay replay;
@@ -224,7 +225,7 @@ RT_TEST(an_accelerator_has_one_failure_shrunk) {
         assert_true(i == 0 ? left <= 3 : left == 150);
         assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, i)), error));
         assert_true((replay.shrunk_yaml != NULL) == (i == 0));
-        assert_ok(rt_replay_ask(&replay, spec.builder, false, &answer, error));
+        assert_ok(rt_replay_ask(&replay, false, &answer, error));
         assert_true(answer.wrong);
     }
 }
@@ -233,7 +234,7 @@ RT_TEST(an_accelerator_has_as_many_failures_shrunk_as_are_asked_for) {
     static const char *const three[] = {"family:kind=plane,seed=1", "family:kind=axis-aligned,seed=1",
                                         "family:kind=axis-aligned,seed=2"};
     static const uint32_t wanted[] = {2, RT_SHRINK_ALL};
-    const RtVerifySpec spec = {"unpadded", true, true, {build_mutant, &unpadded, 0}};
+    const RtVerifySpec spec = {UNPADDED, true, true};
     for (size_t w = 0; w < 2; w++) {
         shrink = wanted[w];
         json_auto_t *rows = verify_spec(&spec, three, 3, 6000, 0, OUT "/s");
@@ -255,19 +256,8 @@ static void lose_last(const RtAccel *accel, const RtScratch *scratch, const RtRa
     if (count >= shortest_losing) hits[count - 1] = RT_MISS;
 }
 
-static RtAccelOps losing_ops;
-
-static RtStatus build_losing(const void *context, const RtScene *scene, int threads, RtAccel **out,
-                             RtError *error) {
-    losing_ops = mutant_ops;
-    losing_ops.nearest = lose_last;
-    RT_TRY(build_mutant(context, scene, threads, out, error));
-    (*out)->ops = &losing_ops;
-    return RT_OK;
-}
-
 RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
-    const RtVerifySpec spec = {"losing", true, true, {build_losing, &padded, 1}};
+    const RtVerifySpec spec = {"losing", true, true};
     OWNED(rt_replay_clear) RtReplay replay;
     RtAnswer answer;
     shortest_losing = 2;
@@ -276,14 +266,14 @@ RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
     assert_true(replay.failure.count > 1 && replay.failure.stream > 1);
     assert_int_equal((replay.failure.asked + 1) % replay.failure.stream, 0);
     for (int shrunk = 0; shrunk < 2; shrunk++) {
-        assert_ok(rt_replay_ask(&replay, spec.builder, shrunk, &answer, error));
+        assert_ok(rt_replay_ask(&replay, shrunk, &answer, error));
         assert_true(answer.wrong);
     }
 }
 
 /* Including the camera's rays, which come first: they form packets. */
 RT_TEST(the_first_rays_are_asked_in_long_streams_as_well_as_alone) {
-    const RtVerifySpec spec = {"losing", true, true, {build_losing, &padded, 1}};
+    const RtVerifySpec spec = {"losing", true, true};
     shortest_losing = 64;
     json_auto_t *rows = verify_spec(&spec, scenes + 1, 1, 1000, 0, OUT "/h");
     assert_true(rt_verify_row_fails(json_array_get(rows, 0)));
@@ -323,10 +313,11 @@ RT_TEST(a_replay_file_needs_no_other_file) {
                  .tmax = INFINITY,
                  .kind = RT_RAY_SHADOW,
                  .source = UINT32_MAX};
-    RtFailure failure = {&ray, 1, 0, 1, true, true};
+    RtFailure failure = {
+        .spec = "bvh", .rays = &ray, .count = 1, .stream = 1, .occluded = true, .counted = true};
     assert_ok(rt_directory_create(OUT, error));
     assert_ok(rt_scene_open(RT_SOURCE_DIR "/scenes/csg-lecture.yaml", &scene, error));
-    RtReplayRecord record = {"moved-away.yaml", "bvh", &scene, &failure, &answer, &shrunk};
+    RtReplayRecord record = {"moved-away.yaml", &scene, &failure, &answer, &shrunk};
     assert_ok(rt_replay_save(path, &record, error));
     OWNED(rt_replay_clear) RtReplay replay;
     assert_ok(rt_replay_load(&replay, path, error));
@@ -334,11 +325,11 @@ RT_TEST(a_replay_file_needs_no_other_file) {
     assert_true(replay.failure.occluded && replay.failure.counted);
     assert_int_equal(replay.fingerprint, rt_scene_fingerprint(&scene));
     for (int part = 0; part < 2; part++) {
-        assert_ok(rt_replay_ask(&replay, rt_accel_builder_of_spec("bvh"), part, &again, error));
+        assert_ok(rt_replay_ask(&replay, part, &again, error));
         assert_false(again.wrong);
     }
     replay.fingerprint ^= 1;
-    assert_bad_input(rt_replay_ask(&replay, rt_accel_builder_of_spec("bvh"), false, &again, error), "");
+    assert_bad_input(rt_replay_ask(&replay, false, &again, error), "");
 }
 
 RT_TEST(a_replay_file_of_a_later_format_is_refused_by_its_number) {
@@ -414,4 +405,19 @@ RT_TEST(rows_add_up_over_the_parameters_of_an_accelerator) {
     assert_non_null(strstr(table, "\n| `tetra` | 2 | 200 | 200 | 0 | 0 | 0 | 5 | 0 |\n"));
 }
 
-RT_TESTS(verify, NULL, assert_nothing_is_kept)
+static int register_accelerators(void **state) {
+    static RtAccelOps noting, losing;
+    (void)state;
+    noting = losing = mutant_ops;
+    noting.name = "noting";
+    noting.build = build_noting_threads;
+    losing.name = "losing";
+    losing.build = NULL; /* padded boxes */
+    losing.nearest = lose_last;
+    assert_ok(rt_accel_register(&mutant_ops, error));
+    assert_ok(rt_accel_register(&noting, error));
+    assert_ok(rt_accel_register(&losing, error));
+    return 0;
+}
+
+RT_TESTS(verify, register_accelerators, assert_nothing_is_kept)

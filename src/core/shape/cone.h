@@ -10,7 +10,6 @@
 
 #include "core/base/ray.h"
 #include "core/base/status.h"
-#include "core/shape/ball.h"
 
 typedef struct RtCone {
     RtVec3 base, apex; /* centres of the circles */
@@ -24,14 +23,6 @@ typedef struct RtCone {
 /* Fills `cone`; rejects negative radii, two radii of 0 and equal centres. */
 RtStatus rt_cone_init(RtCone *cone, RtVec3 base, float base_radius, RtVec3 apex, float apex_radius,
                       RtError *error);
-
-/* The box of the two circles, rounded outward. */
-RtBox rt_cone_box(const RtCone *cone);
-/* The smallest ball around both circles. */
-RtBall rt_cone_ball(const RtCone *cone);
-double rt_cone_support(const RtCone *cone, RtVec3d direction);
-/* Unit normal at `point` on the side, away from the axis. */
-RtVec3d rt_cone_normal(const RtCone *cone, RtVec3d point);
 
 /* True if across + root * d_across, an offset from the axis, is as long as some radius of the cone. On a
  * flat cone the height of a point is no criterion: if it is 2^-20 of the radius, say, it has lost all its

@@ -2,33 +2,28 @@
 /* CSG trees (Requicha 1977; ray casting: Roth 1982, "Ray Casting for Modeling Solids", CGIP 18): solids
  * joined by union, intersection and difference. A tree is one object.
  *
- * A ray R meets a tree by in-order traversal, R n (A op B) = (R n A) op (R n B): the spans of the solids are
- * merged. Every crossing carries the face that it lies on, so normal and material of a hit are those of the
- * solid at that point; on the right of a difference, faces are turned inside out.
+ * A ray R meets a tree by R n (A op B) = (R n A) op (R n B): the spans of the solids are merged. Every
+ * crossing carries its face, so normal and material of a hit are those of the solid there; on the right of a
+ * difference, faces are turned inside out.
  *
- * The merging rule. All crossings at one float32 t form one place (see solid.h). Between two neighbouring
- * places every point is inside or outside each solid, and so inside or outside the tree. The crossings of the
- * tree are exactly the places where its inside begins or ends. So coincident faces of A and B leave neither a
- * skin (A - A is empty, A | A is A) nor a gap, touching solids join without a wall, and parts without
- * thickness vanish. If both operands have a crossing in the direction of the result at such a place, the left
- * operand provides the face.
+ * The merging rule. All crossings at one float32 t form one place (see solid.h). The crossings of the tree
+ * are exactly the places where its inside begins or ends. So coincident faces of A and B leave neither a skin
+ * (A - A is empty, A | A is A) nor a gap, touching solids join without a wall, and parts without thickness
+ * vanish. If both operands have a crossing in the direction of the result, the left one provides the face. A
+ * ray that starts inside hits the far side.
  *
- * Every place where the line enters or leaves is a hit: a ray that starts inside hits the far side.
+ * Layout. A tree is a program for a stack machine whose values are lists of crossings. The operand that can
+ * make the other one unnecessary comes first (the left side of a difference, the smaller operand of an
+ * intersection) while few lists are on the stack; otherwise the one that needs more lists (Sethi & Ullman
+ * 1970, "The Generation of Optimal Code for Arithmetic Expressions", JACM 17): never more than
+ * RT_CSG_MAX_LISTS.
  *
- * Layout. A tree is a program for a stack machine whose values are lists of crossings: no recursion, at any
- * depth. The operand that can make the other one unnecessary comes first (the left side of a difference, the
- * smaller operand of an intersection) while few lists are on the stack; otherwise the one that needs more
- * lists (Sethi & Ullman 1970, "The Generation of Optimal Code for Arithmetic Expressions", JACM 17). So there
- * are never more than RT_CSG_MAX_LISTS lists.
- *
- * Extents. The box of a union contains both boxes, that of an intersection is their intersection, that of
- * a difference is the left box. A node matters only within the boxes of its ancestors, so its own box is
- * clipped to them. If the ray misses the box of a node, or meets it only outside [tmin, tmax], the node is
- * empty for the ray and skipped. That loses no hit, bit for bit: all boxes of a tree are tested with one
- * thick ray, crossings are clamped to the interval of their own solid's box, and the interval of an
- * intersection of boxes is the intersection of their intervals (core/base/ray.h). Trees are compiled with
- * or without these tests; the hits are the same. A node is tested where, by the ratio of areas, a test
- * saves more than one solid per line that meets the nearest tested box above. */
+ * Extents. The box of a node is clipped to those of its ancestors. A node whose box the ray misses, or meets
+ * only outside [tmin, tmax], is skipped. That loses no hit, bit for bit: all boxes of a tree are tested with
+ * one thick ray, crossings are clamped to the interval of their own solid's box, and the interval of an
+ * intersection of boxes is the intersection of their intervals (core/base/ray.h). Trees are compiled with or
+ * without these tests. A node is tested where, by the ratio of areas, a test saves more than one solid per
+ * line that meets the nearest tested box above. */
 #ifndef RT_SHAPE_CSG_H
 #define RT_SHAPE_CSG_H
 
@@ -39,8 +34,8 @@ typedef enum RtCsgOp { RT_CSG_UNION, RT_CSG_INTERSECTION, RT_CSG_DIFFERENCE } Rt
 
 /* ---- making a tree ---- */
 
-/* A part of a tree under construction: a solid, or an operation on other terms. A term may be used any
- * number of times, in any number of trees. */
+/* A part of a tree under construction: a solid, or an operation on other terms. It may be used any number of
+ * times. */
 typedef uint32_t RtCsgTerm;
 
 typedef struct RtCsgNode {
@@ -61,13 +56,13 @@ typedef struct RtCsgBuilder {
 
 void rt_csg_builder_clear(RtCsgBuilder *builder);
 
-/* Larger trees are rejected: reused terms can make a short text an enormous tree. */
+/* The most solids of a tree, one per use: reused terms can make a short text an enormous tree. */
 #define RT_CSG_MAX_SOLIDS (UINT32_C(1) << 24)
 
 /* A term for a solid just added to builder->set, with its material. */
 RtStatus rt_csg_solid(RtCsgBuilder *builder, uint32_t solid, uint32_t material, RtCsgTerm *out,
                       RtError *error);
-/* Rejects a tree of more than RT_CSG_MAX_SOLIDS solids, one per use. */
+/* Rejects a tree of more than RT_CSG_MAX_SOLIDS. */
 RtStatus rt_csg_combine(RtCsgBuilder *builder, RtCsgOp op, RtCsgTerm left, RtCsgTerm right, RtCsgTerm *out,
                         RtError *error);
 /* A moved copy of `term`, which itself does not change. */
@@ -118,9 +113,9 @@ typedef struct RtCsgForest {
 void rt_csg_forest_clear(RtCsgForest *forest);
 uint64_t rt_csg_forest_bytes(const RtCsgForest *forest);
 
-/* Compiles the tree below `root` into *out and appends its parts to `forest`: each use of a solid becomes
- * a moved copy, in the order of the text. Memory is proportional to their number. Rejects an unbounded
- * tree (a half-space that nothing limits), and then changes nothing. */
+/* Compiles the tree below `root` into *out and appends its parts to `forest`: each use of a solid becomes a
+ * moved copy, in the order of the text. Rejects an unbounded tree (a half-space that nothing limits), and
+ * then changes nothing. */
 RtStatus rt_csg_compile(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
                         RtCsg *out, RtError *error);
 
@@ -149,6 +144,6 @@ RtCsgFacet rt_csg_facet(const RtCsgForest *forest, const RtCsg *tree, const RtPr
  * a difference as far as its left side. The support never exceeds that of the box, and equals it where
  * disjoint solids leave nothing. */
 double rt_csg_support(const RtCsgForest *forest, const RtCsg *tree, RtVec3d direction);
-RtBall rt_csg_ball(const RtCsgForest *forest, const RtCsg *tree); /* computed anew; tree->ball holds it */
+RtBall rt_csg_ball(const RtCsgForest *forest, const RtCsg *tree);
 
 #endif

@@ -70,17 +70,88 @@ RtStatus rt_geometry_add_sphere(RtGeometry *geometry, RtVec3 center, float radiu
     return append_sphere(geometry, &(RtSphere){center, radius}, error);
 }
 
+/* Newell's normal: twice the area of the polygon along its normal, about vertex 0 for precision. */
+static RtVec3d newell(const RtVec3 *vertices, uint32_t count) {
+    RtVec3d sum = {0, 0, 0}, origin = rt_widen(vertices[0]);
+    for (uint32_t i = 1; i + 1 < count; i++) {
+        RtVec3d a = rt_subd(rt_widen(vertices[i]), origin), b = rt_subd(rt_widen(vertices[i + 1]), origin);
+        sum = rt_addd(sum, rt_crossd(a, b));
+    }
+    return sum;
+}
+
+/* Of vertices[0..count): its plane and projection. */
+static RtStatus make_polygon(const RtVec3 *vertices, uint32_t first, uint32_t count, RtPolygon *polygon,
+                             RtError *error) {
+    if (count < 3)
+        return rt_fail(error, RT_BAD_INPUT, "a polygon needs at least 3 vertices, this one has %u", count);
+    RtVec3d sum = newell(vertices, count), first_vertex = rt_widen(vertices[0]), offset = {0, 0, 0};
+    RtBox box = RT_EMPTY_BOX;
+    for (uint32_t i = 0; i < count; i++) {
+        offset = rt_addd(offset, rt_subd(rt_widen(vertices[i]), first_vertex));
+        box = rt_box_add_point(box, vertices[i]);
+    }
+    RtVec3d center = rt_add_scaledd(first_vertex, offset, 1.0 / count);
+    double size = rt_lengthd(rt_widen(rt_box_size(box)));
+    double area = rt_lengthd(sum) / 2;
+    if (!(area > 1e-12 * size * size))
+        return rt_fail(error, RT_BAD_INPUT,
+                       "the polygon has no area: its vertices lie on a line or in a point; remove it");
+    RtVec3d normal = rt_normalized(sum);
+    double warp = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        double off = fabs(rt_dotd(normal, rt_subd(rt_widen(vertices[i]), center)));
+        if (off > warp) warp = off; /* gcc 12 for ARM fails to compile fmax here, and below */
+    }
+    if (warp > RT_POLYGON_MAX_WARP * size)
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "the polygon is not planar: a vertex is %.3g off the plane of the others; split it into "
+            "triangles",
+            warp);
+    int dropped = rt_major_axis(rt_narrow(normal));
+    *polygon = (RtPolygon){.normal = normal,
+                           .center = center,
+                           .first = first,
+                           .count = count,
+                           .u = dropped == 0 ? 1 : 0,
+                           .v = dropped == 2 ? 1 : 2,
+                           .warp = rt_float_above(warp / fabs(normal.at[dropped]))};
+    return RT_OK;
+}
+
 RtStatus rt_geometry_add_polygon(RtGeometry *geometry, const RtVec3 *vertices, uint32_t count,
                                  RtError *error) {
     for (uint32_t i = 0; i < count; i++) RT_TRY(check_point(vertices[i], error));
     RtPolygon polygon;
     uint32_t first = geometry->polygon_vertex_count;
-    RT_TRY(rt_polygon_init(&polygon, vertices, first, count, error));
+    RT_TRY(make_polygon(vertices, first, count, &polygon, error));
     RT_TRY(rt_reserve(&geometry->polygon_vertices, &geometry->polygon_vertex_capacity,
                       (uint64_t)first + count, sizeof(RtVec3), error));
     RT_TRY(append_polygon(geometry, &polygon, error));
     memcpy(geometry->polygon_vertices + first, vertices, count * sizeof(RtVec3));
     geometry->polygon_vertex_count += count;
+    return RT_OK;
+}
+
+RtStatus rt_cone_init(RtCone *cone, RtVec3 base, float base_radius, RtVec3 apex, float apex_radius,
+                      RtError *error) {
+    if (!(base_radius >= 0) || !(apex_radius >= 0) || (base_radius == 0 && apex_radius == 0))
+        return rt_fail(error, RT_BAD_INPUT,
+                       "a cone needs radii of at least 0, one of them above 0; these are %g and %g",
+                       (double)base_radius, (double)apex_radius);
+    RtVec3d axis = rt_subd(rt_widen(apex), rt_widen(base));
+    double height = rt_lengthd(axis);
+    if (!(height > 0))
+        return rt_fail(error, RT_BAD_INPUT, "the two ends of the cone are the same point: move one of them");
+    *cone = (RtCone){.base = base,
+                     .apex = apex,
+                     .base_radius = base_radius,
+                     .apex_radius = apex_radius,
+                     .axis = rt_normalized(axis),
+                     .middle = rt_scaled(rt_addd(rt_widen(base), rt_widen(apex)), 0.5),
+                     .height = height,
+                     .slope = ((double)apex_radius - (double)base_radius) / height};
     return RT_OK;
 }
 
@@ -152,32 +223,23 @@ RtStatus rt_geometry_add_triangle(RtGeometry *geometry, const RtVec3 vertices[3]
 
 /* ---- finishing and clearing ---- */
 
-static RtBox object_box(const RtGeometry *g, RtRef ref) {
-    uint32_t index = rt_ref_index(ref);
-    switch (rt_ref_shape(ref)) {
-    case RT_SHAPE_SPHERE: return rt_sphere_box(&g->spheres[index]);
-    case RT_SHAPE_POLYGON: return rt_polygon_box(&g->polygons[index], rt_polygon_vertices(g, index));
-    case RT_SHAPE_TRIANGLE: return rt_triangle_box(&g->triangles[index]);
-    case RT_SHAPE_CONE: return rt_cone_box(&g->cones[index]);
-    case RT_SHAPE_CSG: return g->csgs[index].box;
-    case RT_SHAPE_COUNT: break;
-    }
-    assert(false && "no such shape");
-    return RT_EMPTY_BOX;
-}
+/* X(array, count, capacity) for each growing array but those of the forest. */
+#define OF_SHAPE(CONSTANT, name, Type)                                                                       \
+    X(name##s, name##_count, name##_capacity)                                                                \
+    X(name##_ids, name##_count, name##_id_capacity)
+#define ARRAYS                                                                                               \
+    X(objects, object_count, object_capacity)                                                                \
+    RT_SHAPES(OF_SHAPE)                                                                                      \
+    X(polygon_vertices, polygon_vertex_count, polygon_vertex_capacity)                                       \
+    X(triangle_normals, triangle_count, triangle_normal_capacity)                                            \
+    X(vertex_normals, vertex_normal_count, vertex_normal_capacity)
 
 /* Scenes are kept for long, and accelerators need the memory. */
 static void trim_arrays(RtGeometry *g) {
-    rt_trim(&g->objects, g->object_count, &g->object_capacity, sizeof(RtRef));
-#define TRIM(CONSTANT, name, Type)                                                                           \
-    rt_trim(&g->name##s, g->name##_count, &g->name##_capacity, sizeof(Type));                                \
-    rt_trim(&g->name##_ids, g->name##_count, &g->name##_id_capacity, sizeof(uint32_t));
-    RT_SHAPES(TRIM)
-#undef TRIM
-    rt_trim(&g->polygon_vertices, g->polygon_vertex_count, &g->polygon_vertex_capacity, sizeof(RtVec3));
-    if (g->triangle_normals)
-        rt_trim(&g->triangle_normals, g->triangle_count, &g->triangle_normal_capacity, sizeof(uint32_t));
-    rt_trim(&g->vertex_normals, g->vertex_normal_count, &g->vertex_normal_capacity, sizeof(RtVertexNormals));
+#define X(array, count, capacity)                                                                            \
+    if (g->array) rt_trim(&g->array, g->count, &g->capacity, sizeof *g->array);
+    ARRAYS
+#undef X
 }
 
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error) {
@@ -188,40 +250,28 @@ RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error) {
         return rt_fail_memory(error, "the boxes of the objects", geometry->object_count * sizeof(RtBox));
     geometry->box = RT_EMPTY_BOX;
     for (uint32_t id = 0; id < geometry->object_count; id++) {
-        geometry->boxes[id] = object_box(geometry, geometry->objects[id]);
+        geometry->boxes[id] = rt_object_box(geometry, id);
         geometry->box = rt_box_union(geometry->box, geometry->boxes[id]);
     }
     return RT_OK;
 }
 
-uint64_t rt_geometry_bytes(const RtGeometry *geometry) {
-    const RtGeometry *g = geometry;
-    uint64_t bytes = (uint64_t)g->object_capacity * sizeof *g->objects;
-#define ADD_BYTES(CONSTANT, name, Type)                                                                      \
-    bytes += (uint64_t)g->name##_capacity * sizeof(Type);                                                    \
-    bytes += (uint64_t)g->name##_id_capacity * sizeof(uint32_t);
-    RT_SHAPES(ADD_BYTES)
-#undef ADD_BYTES
-    bytes += (uint64_t)g->polygon_vertex_capacity * sizeof *g->polygon_vertices;
-    bytes += (uint64_t)g->triangle_normal_capacity * sizeof *g->triangle_normals;
-    bytes += (uint64_t)g->vertex_normal_capacity * sizeof *g->vertex_normals;
-    bytes += rt_csg_forest_bytes(&g->forest);
-    return bytes + (g->boxes ? (uint64_t)g->object_count * sizeof *g->boxes : 0);
+uint64_t rt_geometry_bytes(const RtGeometry *g) {
+    uint64_t bytes = rt_csg_forest_bytes(&g->forest);
+    if (g->boxes) bytes += (uint64_t)g->object_count * sizeof *g->boxes;
+#define X(array, count, capacity) bytes += (uint64_t)g->capacity * sizeof *g->array;
+    ARRAYS
+#undef X
+    return bytes;
 }
 
-void rt_geometry_clear(RtGeometry *geometry) {
-    rt_free(geometry->objects);
-#define FREE_ARRAYS(CONSTANT, name, Type)                                                                    \
-    rt_free(geometry->name##s);                                                                              \
-    rt_free(geometry->name##_ids);
-    RT_SHAPES(FREE_ARRAYS)
-#undef FREE_ARRAYS
-    rt_free(geometry->polygon_vertices);
-    rt_free(geometry->triangle_normals);
-    rt_free(geometry->vertex_normals);
-    rt_csg_forest_clear(&geometry->forest);
-    rt_free(geometry->boxes);
-    *geometry = (RtGeometry){0};
+void rt_geometry_clear(RtGeometry *g) {
+#define X(array, count, capacity) rt_free(g->array);
+    ARRAYS
+#undef X
+    rt_csg_forest_clear(&g->forest);
+    rt_free(g->boxes);
+    *g = (RtGeometry){0};
 }
 
 /* ---- scratch memory of hit functions ---- */
@@ -235,141 +285,4 @@ RtStatus rt_crossings_alloc(const RtGeometry *geometry, RtCrossing **crossings, 
     if (geometry->csg_count > 0 && most < UINT32_MAX) *crossings = rt_alloc(most, sizeof(RtCrossing));
     if (geometry->csg_count == 0 || *crossings) return RT_OK;
     return rt_fail_memory(error, "the crossings of a ray with a CSG tree", most * sizeof(RtCrossing));
-}
-
-/* ---- normals and extents ---- */
-
-static RtVec3d interpolated_normal(const RtGeometry *g, uint32_t index, RtVec3d point, RtVec3d geometric) {
-    uint32_t entry = g->triangle_normals ? g->triangle_normals[index] : RT_NO_NORMALS;
-    if (entry == RT_NO_NORMALS) return geometric;
-    const RtVec3 *n = g->vertex_normals[entry].n;
-    RtVec3d w = rt_triangle_weights(&g->triangles[index], point);
-    RtVec3d sum = rt_scaled(rt_widen(n[0]), w.x);
-    sum = rt_add_scaledd(sum, rt_widen(n[1]), w.y);
-    sum = rt_add_scaledd(sum, rt_widen(n[2]), w.z);
-    return rt_lengthd(sum) > 0 ? rt_normalized(sum) : geometric;
-}
-
-static RtNormals csg_normals(const RtGeometry *g, uint32_t index, const RtRay *ray, float t,
-                             RtCrossing *crossings) {
-    RtPreparedRay prepared;
-    rt_hit_ray(&prepared, g, ray, crossings);
-    RtCsgFacet facet = rt_csg_facet(&g->forest, &g->csgs[index], &prepared, t);
-    return (RtNormals){facet.normal, facet.normal, facet.solid};
-}
-
-RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
-                            RtCrossing *crossings) {
-    uint32_t index = rt_ref_index(geometry->objects[id]);
-    RtVec3d point = rt_ray_point(ray, t), normal = {0, 0, 0};
-    switch (rt_ref_shape(geometry->objects[id])) {
-    case RT_SHAPE_SPHERE: normal = rt_sphere_normal(&geometry->spheres[index], point); break;
-    case RT_SHAPE_POLYGON: normal = geometry->polygons[index].normal; break;
-    case RT_SHAPE_CONE: normal = rt_cone_normal(&geometry->cones[index], point); break;
-    case RT_SHAPE_TRIANGLE:
-        normal = rt_triangle_normal(&geometry->triangles[index]);
-        return (RtNormals){normal, interpolated_normal(geometry, index, point, normal), RT_NO_SOLID};
-    case RT_SHAPE_CSG: return csg_normals(geometry, index, ray, t, crossings);
-    case RT_SHAPE_COUNT: break;
-    }
-    return (RtNormals){normal, normal, RT_NO_SOLID};
-}
-
-RtBall rt_object_ball(const RtGeometry *geometry, uint32_t id) {
-    uint32_t index = rt_ref_index(geometry->objects[id]);
-    switch (rt_ref_shape(geometry->objects[id])) {
-    case RT_SHAPE_SPHERE: return rt_sphere_ball(&geometry->spheres[index]);
-    case RT_SHAPE_POLYGON:
-        return rt_polygon_ball(&geometry->polygons[index], rt_polygon_vertices(geometry, index));
-    case RT_SHAPE_TRIANGLE: return rt_triangle_ball(&geometry->triangles[index]);
-    case RT_SHAPE_CONE: return rt_cone_ball(&geometry->cones[index]);
-    case RT_SHAPE_CSG: return geometry->csgs[index].ball;
-    case RT_SHAPE_COUNT: break;
-    }
-    assert(false && "no such shape");
-    return (RtBall){{0, 0, 0}, 0};
-}
-
-double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direction) {
-    uint32_t index = rt_ref_index(geometry->objects[id]);
-    switch (rt_ref_shape(geometry->objects[id])) {
-    case RT_SHAPE_SPHERE: return rt_sphere_support(&geometry->spheres[index], direction);
-    case RT_SHAPE_POLYGON:
-        return rt_polygon_support(&geometry->polygons[index], rt_polygon_vertices(geometry, index),
-                                  direction);
-    case RT_SHAPE_TRIANGLE: return rt_triangle_support(&geometry->triangles[index], direction);
-    case RT_SHAPE_CONE: return rt_cone_support(&geometry->cones[index], direction);
-    case RT_SHAPE_CSG: return rt_csg_support(&geometry->forest, &geometry->csgs[index], direction);
-    case RT_SHAPE_COUNT: break;
-    }
-    assert(false && "no such shape");
-    return 0;
-}
-
-/* The longest edge of a closed chain of vertices. */
-static RtVec3d longest_edge(const RtVec3 *vertices, uint32_t count) {
-    RtVec3d best = {0, 0, 0};
-    for (uint32_t i = 0; i < count; i++) {
-        RtVec3d edge = rt_subd(rt_widen(vertices[(i + 1) % count]), rt_widen(vertices[i]));
-        if (rt_dotd(edge, edge) > rt_dotd(best, best)) best = edge;
-    }
-    return best;
-}
-
-/* The longest axis of a tree's largest solid, and another one; of a polyhedron, two normals. */
-static void csg_axes(const RtGeometry *g, const RtCsg *tree, RtVec3d *main, RtVec3d *normal) {
-    const RtSolidSet *set = &g->forest.set;
-    double largest = -1;
-    for (uint32_t i = 0; i < tree->solid_count; i++) {
-        const RtSolid *solid = &set->solids[tree->first_solid + i];
-        double area = rt_box_half_area(solid->box);
-        if (solid->subtracted || !isfinite(area) || area <= largest) continue;
-        largest = area;
-        if (solid->kind == RT_SOLID_POLYHEDRON) {
-            *main = set->planes[solid->first].normal;
-            *normal = set->planes[solid->first + solid->count - 1].normal;
-            continue;
-        }
-        *main = *normal = rt_vec3d(0, 0, 0);
-        for (int a = 0; a < 3; a++) {
-            RtVec3d axis = rt_transform_column(&solid->to_world, a);
-            bool longer = rt_dotd(axis, axis) > rt_dotd(*main, *main);
-            *normal = rt_normalized(longer ? *main : axis);
-            if (longer) *main = axis;
-        }
-    }
-}
-
-void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]) {
-    uint32_t index = rt_ref_index(geometry->objects[id]);
-    RtVec3d main = {1, 0, 0}, normal = {0, 0, 1};
-    switch (rt_ref_shape(geometry->objects[id])) {
-    case RT_SHAPE_TRIANGLE:
-        main = longest_edge(geometry->triangles[index].v, 3);
-        normal = rt_triangle_normal(&geometry->triangles[index]);
-        break;
-    case RT_SHAPE_POLYGON: {
-        const RtPolygon *polygon = &geometry->polygons[index];
-        main = longest_edge(rt_polygon_vertices(geometry, index), polygon->count);
-        normal = polygon->normal;
-        break;
-    }
-    case RT_SHAPE_CONE: main = geometry->cones[index].axis; break;
-    case RT_SHAPE_CSG: csg_axes(geometry, &geometry->csgs[index], &main, &normal); break;
-    case RT_SHAPE_SPHERE:
-    case RT_SHAPE_COUNT: break;
-    }
-    if (rt_dotd(main, main) == 0) main = rt_vec3d(1, 0, 0);
-    main = rt_normalized(main);
-    /* Gram-Schmidt, starting from a candidate that is not along the main axis. */
-    RtVec3d candidates[4] = {normal, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (int i = 0; i < 4; i++) {
-        RtVec3d rest = rt_add_scaledd(candidates[i], main, -rt_dotd(candidates[i], main));
-        if (rt_lengthd(rest) < 0.5) continue;
-        axes[0] = main;
-        axes[1] = rt_normalized(rest);
-        axes[2] = rt_crossd(axes[0], axes[1]);
-        return;
-    }
-    assert(false && "one of three axes is always far enough from any direction");
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Geometry: all objects of a scene in flat arrays, one array per shape, and the functions that dispatch on
- * shape.
- *
- * Objects have dense ids 0..object_count-1 in the order in which they were added. An object is a reference
- * (shape and index into that shape's array). Each shape's array is in order of ids, so a loop over a shape
- * meets ids in ascending order. RT_SHAPES is the one list of shapes. */
+ * shape. Objects have dense ids 0..object_count-1 in the order in which they were added. Each shape's array
+ * is in order of ids. RT_SHAPES is the one list of shapes. */
 #ifndef RT_SHAPE_GEOMETRY_H
 #define RT_SHAPE_GEOMETRY_H
 
@@ -92,9 +89,9 @@ static inline const RtVec3 *rt_polygon_vertices(const RtGeometry *geometry, uint
     return geometry->polygon_vertices + geometry->polygons[index].first;
 }
 
-/* Each adds one object with the next id. They reject values that are not finite, beyond RT_MAX_COORDINATE
- * or degenerate (a radius of 0, a polygon without area); messages have no file position, and nothing
- * changes. Triangles without area are accepted, since meshes contain them; they are never hit. */
+/* Each adds one object with the next id. They reject values that are not finite, beyond RT_MAX_COORDINATE or
+ * degenerate (a radius of 0, a polygon without area); then nothing changes. Triangles without area are
+ * accepted, since meshes contain them; they are never hit. */
 RtStatus rt_geometry_add_sphere(RtGeometry *geometry, RtVec3 center, float radius, RtError *error);
 RtStatus rt_geometry_add_polygon(RtGeometry *geometry, const RtVec3 *vertices, uint32_t count,
                                  RtError *error);
@@ -114,17 +111,13 @@ RtStatus rt_geometry_copy_csg(RtGeometry *geometry, const RtGeometry *from, uint
 /* Computes the boxes. Call it once, after the last object. */
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error);
 
-/* Bytes of memory that the arrays hold. */
 uint64_t rt_geometry_bytes(const RtGeometry *geometry);
-
-/* Frees everything and leaves the empty geometry. */
 void rt_geometry_clear(RtGeometry *geometry);
 
 #define RT_NO_SOLID UINT32_MAX
 
-/* Allocates the scratch memory of hit functions, for the crossings of a ray with the largest CSG tree;
- * *crossings becomes NULL if there is no tree. It serves one thread at a time; free it with rt_free. Allocate
- * it before tracing, during which nothing is allocated. */
+/* Allocates the scratch memory of hit functions, for the crossings of a ray with the largest CSG tree; NULL
+ * if there is no tree. It serves one thread at a time; free it with rt_free. */
 RtStatus rt_crossings_alloc(const RtGeometry *geometry, RtCrossing **crossings, RtError *error);
 
 /* Prepares *prepared for box tests and for the hit functions of this geometry; `crossings` is borrowed.
@@ -145,8 +138,9 @@ typedef struct RtNormals {
 RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
                             RtCrossing *crossings);
 
-/* Extents of object `id` besides geometry->boxes[id]: a ball, and the support function, which is the
- * largest dot product with `direction` (for slabs and oriented boxes). */
+/* Extents of object `id`: its box, which geometry->boxes[id] is; a ball; and the support function, which is
+ * the largest dot product with `direction` (for slabs and oriented boxes). */
+RtBox rt_object_box(const RtGeometry *geometry, uint32_t id);
 RtBall rt_object_ball(const RtGeometry *geometry, uint32_t id);
 double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direction);
 
@@ -154,7 +148,7 @@ double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direct
  * normal; for a CSG tree, those of its largest solid. */
 void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]);
 
-/* The hit functions of all shapes but triangles and spheres: out of line, because they use many registers. */
+/* All shapes but triangles and spheres: out of line, because their hit functions use many registers. */
 static __attribute__((noinline)) bool rt_rarer_hit(const RtGeometry *geometry, uint32_t id,
                                                    const RtPreparedRay *ray, float *t, RtTally *tally) {
     RtRef ref = geometry->objects[id];

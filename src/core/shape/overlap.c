@@ -145,11 +145,6 @@ bool rt_outline_meets_box(const RtOutline *outline, const RtBox *box, double mar
     }
 }
 
-bool rt_object_meets_box(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin) {
-    RtOutline outline = rt_object_outline(geometry, id);
-    return rt_outline_meets_box(&outline, box, margin);
-}
-
 /* ---- parts ---- */
 
 /* Each plane cuts each edge at most once, and at most half the edges. */
@@ -260,7 +255,8 @@ static bool surface_part(const RtGeometry *geometry, uint32_t id, const RtBox *b
     }
     default: break;
     }
-    return rt_object_meets_box(geometry, id, box, margin);
+    RtOutline outline = rt_object_outline(geometry, id);
+    return rt_outline_meets_box(&outline, box, margin);
 }
 
 bool rt_object_part(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin, RtBox *out) {

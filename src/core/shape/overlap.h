@@ -16,19 +16,15 @@ typedef struct RtOutline {
 
 RtOutline rt_object_outline(const RtGeometry *geometry, uint32_t id);
 
-/* False only if every point of the object's surface, as its hit function sees it, is more than `margin`
- * from `box` along some axis; a box strictly inside a sphere does not meet it. The test is nearly exact
- * except for cones and concave polygons (treated as convex), where it may return true nearby. To cover
+/* False only if every point of the object's surface, as its hit function sees it, is more than `margin` from
+ * `box` along some axis. Nearly exact except for cones and concave polygons (treated as convex). To cover
  * rounding, `margin` must be at least 2^-40 of the largest coordinate of scene and box. */
 bool rt_outline_meets_box(const RtOutline *outline, const RtBox *box, double margin);
-
-/* The same for a single box. */
-bool rt_object_meets_box(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin);
 
 /* Sets *out to a box around all points of `box` that are inside the object's own box and within `margin`,
  * along each axis, of its surface; false only if there are none. It is nearly the smallest such box for
  * triangles, spheres, cones, and polygons of up to 16 vertices; for others it is the intersection of `box`
- * and the own box, unless rt_object_meets_box returns false. `margin` as above. */
+ * and the own box, unless they do not meet. `margin` as above. */
 bool rt_object_part(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin, RtBox *out);
 
 #endif

@@ -3,15 +3,12 @@
  *
  * Hit by projection (the lecture's method): the ray meets the plane, and the point is tested in the
  * coordinate plane onto which the polygon projects best, by counting crossings of its edges. Edges and
- * vertices belong to the polygon, so a symmetric ray through the edge of a cube does not slip through; a ray
- * exactly through an oblique edge may, because the point is rounded. The plane is Newell's, through the
- * centroid, in double. Vertices lie in one array of the geometry. */
+ * vertices belong to the polygon; a ray exactly through an oblique edge may slip through all the same,
+ * because the point is rounded. The plane is Newell's, through the centroid, in double. */
 #ifndef RT_SHAPE_POLYGON_H
 #define RT_SHAPE_POLYGON_H
 
 #include "core/base/ray.h"
-#include "core/base/status.h"
-#include "core/shape/ball.h"
 
 typedef struct RtPolygon {
     RtVec3d normal; /* unit, right-hand rule over the vertices */
@@ -26,18 +23,7 @@ typedef struct RtPolygon {
  * size. */
 #define RT_POLYGON_MAX_WARP 1e-3
 
-/* Fills `polygon` from vertices[0..count): its plane and projection. Rejects fewer than 3 vertices, no
- * area, or a warp above RT_POLYGON_MAX_WARP. */
-RtStatus rt_polygon_init(RtPolygon *polygon, const RtVec3 *vertices, uint32_t first, uint32_t count,
-                         RtError *error);
-
 /* Below, `vertices` are the polygon's own: the geometry's array from `first` on. */
-
-/* Extents contain the vertices and the polygon as it is hit, projected to its plane along the third axis.
- * The box is flat and exact for a polygon in a coordinate plane. */
-RtBox rt_polygon_box(const RtPolygon *polygon, const RtVec3 *vertices);
-RtBall rt_polygon_ball(const RtPolygon *polygon, const RtVec3 *vertices);
-double rt_polygon_support(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d direction);
 
 /* Even-odd rule in the projection plane; a point on an edge is inside. */
 static inline bool rt_polygon_inside(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d point) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sets of solids: dispatch on the kind, and moving. Each kind has its own file, solid_KIND.c. */
+/* Sets of solids: dispatch on the kind, and moving. */
 #include "core/shape/solid.h"
 
 #include "core/base/memory.h"

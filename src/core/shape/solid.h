@@ -3,9 +3,8 @@
  * crossings open and close each span.
  *
  * A solid is stored ready for rays: its flat faces as planes in world space, its curved face by a transform
- * from object space, where it is one of the shapes below. So t is the ray's own t everywhere, and two faces
- * in one plane are met at the same bits of t, whatever solids they belong to, if their numbers are the same
- * up to sign.
+ * from object space, where it is one of the shapes below. So two faces in one plane are met at the same bits
+ * of t, whatever solids they belong to, if their numbers are the same up to sign.
  *
  *   sphere       the unit ball; under an uneven transform an ellipsoid
  *   cone         between two parallel caps: x^2 + y^2 <= (1 + (ratio - 1) z)^2, 0 <= z <= 1;
@@ -14,22 +13,21 @@
  *   polyhedron   an intersection of half-spaces: half-space (1), box (6), any convex polyhedron
  *   mesh         the inside of a closed triangle mesh: where more of its surface has been entered than left
  *
- * Planes have unit normals. Planes across a coordinate axis are exact: the normal is the axis, and the offset
- * a float32, like all coordinates of geometry.
+ * Planes have unit normals. Across a coordinate axis they are exact: the offset is a float32, like all
+ * coordinates of geometry.
  *
- * Rounding. t is computed in double, clamped to where the ray is within the box of the solid (for the
- * thick ray, core/base/ray.h), and rounded to float32; crossings of equal float32 t are one place. A span
- * has a length: if it opens and closes at one place (a tangent, an edge) it is dropped, and spans that
- * touch are joined. A ray in the plane of a flat face, or along a straight line of a curved one, is
- * outside. A ray in the surface of a mesh passes on one side of it, as if moved by an infinitesimal
- * distance. */
+ * Rounding. t is computed in double, clamped to where the ray is within the box of the solid (for the thick
+ * ray, core/base/ray.h), and rounded to float32; crossings of equal float32 t are one place. A span that
+ * opens and closes at one place (a tangent, an edge) is dropped, and spans that touch are joined. A ray in
+ * the plane of a flat face, or along a straight line of a curved one, is outside. A ray in the surface of a
+ * mesh passes on one side of it. */
 #ifndef RT_SHAPE_SOLID_H
 #define RT_SHAPE_SOLID_H
 
 #include "core/base/ray.h"
 #include "core/base/status.h"
 #include "core/base/transform.h"
-#include "core/shape/ball.h"
+#include "core/shape/sphere.h"
 #include "core/shape/triangle.h"
 
 /* X(CONSTANT, name) */
@@ -85,13 +83,12 @@ void rt_solid_set_clear(RtSolidSet *set);
 uint64_t rt_solid_set_bytes(const RtSolidSet *set);
 
 /* Each adds a solid, given in object space with its transform to world space, and returns its index. They
- * reject values that are not finite, solids that are flat or empty, and coordinates beyond
- * RT_MAX_COORDINATE; messages have no file position, and nothing changes. */
+ * reject what is not finite, flat, empty, or beyond RT_MAX_COORDINATE; then nothing changes. */
 RtStatus rt_solid_add_sphere(RtSolidSet *set, const RtTransform *to_world, uint32_t *index, RtError *error);
 RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
                            RtError *error);
-/* Replaces the caps of a cone, caps[0..count) as in RtSolid. Those of a moved cone differ from those of its
- * transform by rounding; rejects any other difference. */
+/* Replaces the caps of a cone, as in RtSolid. Those of a moved cone differ from those of its transform by
+ * rounding; rejects any other difference. */
 RtStatus rt_solid_set_caps(RtSolidSet *set, uint32_t index, const RtPlane *caps, uint32_t count,
                            RtError *error);
 RtStatus rt_solid_add_torus(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
@@ -102,18 +99,15 @@ RtStatus rt_solid_add_torus(RtSolidSet *set, double ratio, const RtTransform *to
 RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_t count,
                                  const RtTransform *to_world, uint32_t *index, RtError *error);
 /* triangles[0..count) in object space; the set reorders them. Rejects a mesh that is not closed (each edge
- * must occur equally often in both directions; the message names one that does not) and one turned inside
- * out (volume not above 0). */
+ * must occur equally often in both directions) and one turned inside out (volume not above 0). */
 RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_t count,
                            const RtTransform *to_world, uint32_t *index, RtError *error);
 
-/* The same, by the parameters of scene files. Box: faces -x, x, -y, y, -z, z. Half-space: through `point`,
- * on the side away from `normal`. Frustum: a cone given by its two circles, a cylinder if their radii are
- * equal; one radius may be 0. Ring: a torus given by the circle in its middle, of radius `major`, and the
- * radius `minor` < `major` of its tube. Hull: the convex hull of 4 to RT_SOLID_MAX_VERTICES points (arb8:
- * 8); points within a few float32 ulps of a plane through others count as on it, points inside are
- * ignored. Building a polyhedron, and its support function, take time quadratic in its faces (40 ms for
- * 500). */
+/* The same, by the parameters of scene files. Half-space: through `point`, on the side away from `normal`.
+ * Frustum: a cone given by its two circles; one radius may be 0. Ring: a torus given by the circle in its
+ * middle, of radius `major`, and the radius `minor` < `major` of its tube. Hull: the convex hull of 4 to
+ * RT_SOLID_MAX_VERTICES points (arb8: 8); points within a few float32 ulps of a plane through others count as
+ * on it. Building a polyhedron takes time quadratic in its faces (40 ms for 500). */
 #define RT_SOLID_MAX_VERTICES 256
 RtStatus rt_solid_add_box(RtSolidSet *set, RtVec3 lo, RtVec3 hi, uint32_t *index, RtError *error);
 RtStatus rt_solid_add_half_space(RtSolidSet *set, RtVec3 point, RtVec3 normal, uint32_t *index,
@@ -134,8 +128,8 @@ RtStatus rt_solid_add_moved(RtSolidSet *set, const RtSolidSet *source, uint32_t 
 
 /* ---- rays ---- */
 
-/* A ray for solids: its line in double, and the thick ray that tests the boxes of one tree. Its thickness
- * follows from the tree's reach (csg.h), so answers do not depend on the rest of the scene. */
+/* Its line in double, and the thick ray that tests the boxes of one tree. The thickness follows from the
+ * tree's reach (csg.h), so answers do not depend on the rest of the scene. */
 typedef struct RtSolidRay {
     RtVec3d org, dir;
     RtPreparedRay thick;
@@ -152,10 +146,9 @@ typedef struct RtCrossing {
 /* The most crossings of any line with the solid; even. */
 uint32_t rt_solid_most_crossings(const RtSolid *solid);
 
-/* The crossings of the whole line of the ray with the solid, not only within [tmin, tmax], to
- * out[0..rt_solid_most_crossings): alternately opening and closing, t ascending, strictly so within a
- * span. Returns their number, which is even. The caller tests the box of the solid with the thick ray and
- * passes the interval [near, far] of t in which the ray is in it; if the ray misses the box there is no
+/* The crossings of the whole line of the ray with the solid to out[0..rt_solid_most_crossings): alternately
+ * opening and closing, t ascending, strictly so within a span. Returns their number, which is even. [near,
+ * far] is the interval of t in which the thick ray is in the solid's box; a ray that misses it has no
  * crossing. */
 uint32_t rt_solid_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,
                             float far, RtCrossing *out);
@@ -163,11 +156,9 @@ uint32_t rt_solid_crossings(const RtSolidSet *set, uint32_t index, const RtSolid
 /* Unit normal of a face at `point` on it, pointing out of the solid. */
 RtVec3d rt_solid_normal(const RtSolidSet *set, uint32_t index, uint32_t face, RtVec3d point);
 
-/* The largest dot product of `direction` with a point of the solid; INFINITY if it is unbounded in that
- * direction. */
+/* The largest dot product of `direction` with a point of the solid, and a ball around it; INFINITY where it
+ * is unbounded. */
 double rt_solid_support(const RtSolidSet *set, uint32_t index, RtVec3d direction);
-
-/* A ball around the solid; of infinite radius if the solid is unbounded. */
 RtBall rt_solid_ball(const RtSolidSet *set, uint32_t index);
 
 #endif

@@ -12,9 +12,8 @@
  * triangle twice.
  *
  * Triangles lie in the leaves of a binary tree of boxes, complete, RT_SOLID_LEAF per leaf: the half of the
- * triangles that is lower along the longest side of their box goes left. So the boxes are the whole tree,
- * from the root (node 1, with children 2 and 3), and a moved copy needs new boxes but no new order. If the
- * thick ray misses a box, no outline in it winds about the line, however it rounds.
+ * triangles that is lower along the longest side of their box goes left. So a moved copy needs new boxes but
+ * no new order. If the thick ray misses a box, no outline in it winds about the line, however it rounds.
  *
  * t is computed for a point between two edges, which lies on the triangle whatever its shape: slivers,
  * triangles without area and triangles seen edge-on can be crossed. Faces across an axis are planes, as in
@@ -178,9 +177,7 @@ RtBall rt_solid_mesh_ball(const RtSolidSet *set, const RtSolid *solid) {
     return (RtBall){center, sqrt(most) * (1 + 0x1p-50)};
 }
 
-/* ---- making ---- */
-
-/* ---- is it closed? ---- */
+/* ---- making: is it closed? ---- */
 
 /* An edge with its ends in order; `turned` is 1 if the triangle has them in this order, -1 otherwise. */
 typedef struct Edge {
@@ -224,16 +221,15 @@ static RtStatus check_edges(Edge *edges, size_t count, RtError *error) {
 }
 
 static RtStatus check_closed(const RtTriangle *triangles, uint32_t count, RtError *error) {
+    RT_ARENA(memory);
     size_t edge_count = 3 * (size_t)count;
-    Edge *edges = rt_alloc(edge_count, sizeof *edges);
-    if (!edges) return rt_fail_memory(error, "the edges of a mesh", edge_count * sizeof *edges);
+    Edge *edges = rt_arena_alloc(&memory, edge_count, sizeof *edges);
+    RT_TRY(rt_arena_check(&memory, "the edges of a mesh", error));
     for (uint32_t i = 0; i < count; i++) {
         const RtVec3 *v = triangles[i].v;
         for (uint32_t k = 0; k < 3; k++) edges[3 * (size_t)i + k] = edge_of(v[k], v[(k + 1) % 3]);
     }
-    RtStatus status = check_edges(edges, edge_count, error);
-    rt_free(edges);
-    return status;
+    return check_edges(edges, edge_count, error);
 }
 
 /* The volume is the sum of the tetrahedra from one vertex to all triangles. */
@@ -320,10 +316,10 @@ RtStatus rt_solid_mesh_boxes(RtSolidSet *set, RtSolid *solid, RtError *error) {
 static RtStatus check_and_order(RtTriangle *triangles, uint32_t count, RtError *error) {
     RT_TRY(check_closed(triangles, count, error));
     RT_TRY(rt_solid_check_volume(triangles, count, error));
-    Placed *scratch = rt_alloc(count, sizeof *scratch);
-    if (!scratch) return rt_fail_memory(error, "the order of a mesh", count * sizeof *scratch);
+    RT_ARENA(memory);
+    Placed *scratch = rt_arena_alloc(&memory, count, sizeof *scratch);
+    RT_TRY(rt_arena_check(&memory, "the order of a mesh", error));
     put_in_order(triangles, count, leaves_for(count), scratch);
-    rt_free(scratch);
     return RT_OK;
 }
 

@@ -42,20 +42,6 @@ RtStatus rt_solid_check_transform(const RtTransform *to_world, RtError *error) {
     return RT_OK;
 }
 
-RtTransform rt_solid_transform_about(RtVec3d origin, RtVec3d axis, double radius, double height) {
-    RtVec3d z = rt_normalized(axis), aside = {{0, 0, 0}};
-    int least = 0;
-    for (int a = 1; a < 3; a++) least = fabs(z.at[a]) < fabs(z.at[least]) ? a : least;
-    aside.at[least] = 1;
-    RtVec3d x = rt_normalized(rt_crossd(aside, z)), y = rt_crossd(z, x);
-    const RtVec3d columns[4] = {rt_scaled(x, radius), rt_scaled(y, radius), rt_scaled(z, height), origin};
-    RtTransform to_world;
-    for (int row = 0; row < 3; row++) {
-        for (int i = 0; i < 4; i++) to_world.m[row][i] = columns[i].at[row];
-    }
-    return to_world;
-}
-
 /* The largest eigenvalue of the matrix G of dot products is at most its trace, and that of G^2 is its
  * square: repeated squaring tightens the bound. */
 double rt_largest_stretch(RtVec3d x, RtVec3d y, RtVec3d z) {

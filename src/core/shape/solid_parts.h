@@ -19,11 +19,10 @@ RT_SOLID_KINDS(RT_SOLID_FUNCTIONS)
 
 /* ---- building solids: in solid_parts.c unless another file is named ---- */
 
-/* The largest dot product of `direction` with a point of the solid. */
 typedef double RtSolidSupport(const RtSolidSet *set, const RtSolid *solid, RtVec3d direction);
 
-/* Adds `solid`, complete except for `inverse` and `box`. Its `count` planes or triangles, and the boxes of
- * a mesh, already lie behind those of the set (rt_reserve). */
+/* Adds `solid`, complete except for `inverse` and `box`. Its planes, triangles and boxes already lie behind
+ * those of the set. */
 RtStatus rt_solid_finish(RtSolidSet *set, RtSolid *solid, RtSolidSupport *support, uint32_t *index,
                          RtError *error);
 
@@ -33,21 +32,15 @@ RtStatus rt_solid_mesh_boxes(RtSolidSet *set, RtSolid *solid, RtError *error);
 /* Triangles per leaf. */
 #define RT_SOLID_LEAF 4
 
-/* In solid_cone.c: fits the transform of a cone to its caps, which lie in the set; caps across a world
+/* In solid_round.c: fits the transform of a cone to its caps, which lie in the set; caps across a world
  * axis are rounded to float32. The cone may become flat, which rt_solid_finish rejects. */
 void rt_solid_cone_to_caps(const RtSolidSet *set, RtSolid *solid);
 
-/* Reject planes that leave no inside or a flat one (in solid_polyhedron.c), and a closed mesh whose volume
- * is not above 0 (in solid_mesh.c). */
+/* Reject planes that leave no inside or a flat one (in solid_polyhedron.c), a closed mesh whose volume is not
+ * above 0 (in solid_mesh.c), and a transform that is not finite or that flattens. */
 RtStatus rt_solid_check_inside(const RtPlane *planes, uint32_t count, RtError *error);
 RtStatus rt_solid_check_volume(const RtTriangle *triangles, uint32_t count, RtError *error);
-
-/* Rejects a transform that is not finite or that flattens. */
 RtStatus rt_solid_check_transform(const RtTransform *to_world, RtError *error);
-
-/* The transform whose z axis is `height` along `axis` and whose x and y axes are `radius` long, all
- * orthogonal. An axis along a world axis yields axes along world axes. */
-RtTransform rt_solid_transform_about(RtVec3d origin, RtVec3d axis, double radius, double height);
 
 /* The coordinate axis along which the vector lies, or -1. */
 static inline int rt_axis_of(RtVec3d v) {
@@ -56,10 +49,8 @@ static inline int rt_axis_of(RtVec3d v) {
     return v.x == 0 && v.y == 0 ? 2 : -1;
 }
 
-/* The plane through `point` with normal `normal`, of any length but 0. */
+/* `normal` of any length but 0. */
 RtPlane rt_plane_through(RtVec3d point, RtVec3d normal);
-
-/* The plane moved by `move`. */
 RtPlane rt_plane_moved(const RtPlane *plane, const RtTransform *move);
 
 /* The largest factor by which the matrix with columns x, y, z stretches any vector, slightly rounded up. */
@@ -108,13 +99,11 @@ static inline RtVec3d rt_solid_to_object(const RtSolid *solid, RtVec3d v) {
                     rt_dotd(solid->inverse[2], v));
 }
 
-/* A world-space point in object space. The origins are subtracted first, which is exact or nearly so; a
- * product would lose digits. */
+/* The origins are subtracted first, which is exact or nearly so; a product would lose digits. */
 static inline RtVec3d rt_solid_point_to_object(const RtSolid *solid, RtVec3d point) {
     return rt_solid_to_object(solid, rt_subd(point, rt_transform_column(&solid->to_world, 3)));
 }
 
-/* An object-space normal in world space, of unit length. */
 static inline RtVec3d rt_solid_normal_to_world(const RtSolid *solid, RtVec3d normal) {
     RtVec3d sum = rt_scaled(solid->inverse[0], normal.x);
     sum = rt_add_scaledd(sum, solid->inverse[1], normal.y);

@@ -231,26 +231,3 @@ RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_
                      .to_world = rt_transform_identity()};
     return rt_solid_finish(set, &solid, rt_solid_polyhedron_support, index, error);
 }
-
-RtStatus rt_solid_add_box(RtSolidSet *set, RtVec3 lo, RtVec3 hi, uint32_t *index, RtError *error) {
-    RtTransform here = rt_transform_identity();
-    RtPlane planes[3][2] = {0};
-    for (int a = 0; a < 3; a++) {
-        if (!(lo.at[a] < hi.at[a]))
-            return rt_fail(error, RT_BAD_INPUT, "a box needs lo < hi on each axis; on %c they are %g and %g",
-                           "xyz"[a], (double)lo.at[a], (double)hi.at[a]);
-        planes[a][0].normal.at[a] = -1, planes[a][0].offset = -(double)lo.at[a];
-        planes[a][1].normal.at[a] = 1, planes[a][1].offset = (double)hi.at[a];
-    }
-    return rt_solid_add_polyhedron(set, planes[0], 6, &here, index, error);
-}
-
-RtStatus rt_solid_add_half_space(RtSolidSet *set, RtVec3 point, RtVec3 normal, uint32_t *index,
-                                 RtError *error) {
-    RtTransform here = rt_transform_identity();
-    if (!rt_finite(point) || !rt_finite(normal) || rt_lengthd(rt_widen(normal)) == 0)
-        return rt_fail(error, RT_BAD_INPUT,
-                       "a half-space needs a point and a normal of finite numbers, the normal not 0");
-    RtPlane plane = rt_plane_through(rt_widen(point), rt_widen(normal));
-    return rt_solid_add_polyhedron(set, &plane, 1, &here, index, error);
-}

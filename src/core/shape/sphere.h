@@ -5,24 +5,25 @@
 #define RT_SHAPE_SPHERE_H
 
 #include "core/base/ray.h"
-#include "core/shape/ball.h"
 
 typedef struct RtSphere {
     RtVec3 center;
     float radius;
 } RtSphere;
 
+/* A bounding sphere, in double. */
+typedef struct RtBall {
+    RtVec3d center;
+    double radius;
+} RtBall;
+
 /* The box, rounded outward. */
-RtBox rt_sphere_box(const RtSphere *sphere);
-
-/* The sphere itself. */
-RtBall rt_sphere_ball(const RtSphere *sphere);
-
-/* The largest dot product of `direction` with a point of the sphere. */
-double rt_sphere_support(const RtSphere *sphere, RtVec3d direction);
-
-/* Unit normal at `point` on the sphere, pointing outward. */
-RtVec3d rt_sphere_normal(const RtSphere *sphere, RtVec3d point);
+static inline RtBox rt_sphere_box(const RtSphere *sphere) {
+    RtVec3d c = rt_widen(sphere->center);
+    double r = (double)sphere->radius;
+    return (RtBox){{rt_float_below(c.x - r), rt_float_below(c.y - r), rt_float_below(c.z - r)},
+                   {rt_float_above(c.x + r), rt_float_above(c.y + r), rt_float_above(c.z + r)}};
+}
 
 /* The first t in [tmin, tmax] at which the ray meets the sphere. */
 static inline bool rt_sphere_hit(const RtSphere *sphere, const RtBox *own, const RtPreparedRay *ray,

@@ -1,13 +1,98 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The convex hull of points as a polyhedron: tries the plane of each three points. Most planes are discarded
+/* Solids by the parameters of scene files. */
+#include "core/base/memory.h"
+#include "core/shape/cone.h"
+#include "core/shape/solid_parts.h"
+
+/* ---- polyhedra ---- */
+
+RtStatus rt_solid_add_box(RtSolidSet *set, RtVec3 lo, RtVec3 hi, uint32_t *index, RtError *error) {
+    RtTransform here = rt_transform_identity();
+    RtPlane planes[3][2] = {0};
+    for (int a = 0; a < 3; a++) {
+        if (!(lo.at[a] < hi.at[a]))
+            return rt_fail(error, RT_BAD_INPUT, "a box needs lo < hi on each axis; on %c they are %g and %g",
+                           "xyz"[a], (double)lo.at[a], (double)hi.at[a]);
+        planes[a][0].normal.at[a] = -1, planes[a][0].offset = -(double)lo.at[a];
+        planes[a][1].normal.at[a] = 1, planes[a][1].offset = (double)hi.at[a];
+    }
+    return rt_solid_add_polyhedron(set, planes[0], 6, &here, index, error);
+}
+
+RtStatus rt_solid_add_half_space(RtSolidSet *set, RtVec3 point, RtVec3 normal, uint32_t *index,
+                                 RtError *error) {
+    RtTransform here = rt_transform_identity();
+    if (!rt_finite(point) || !rt_finite(normal) || rt_lengthd(rt_widen(normal)) == 0)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "a half-space needs a point and a normal of finite numbers, the normal not 0");
+    RtPlane plane = rt_plane_through(rt_widen(point), rt_widen(normal));
+    return rt_solid_add_polyhedron(set, &plane, 1, &here, index, error);
+}
+
+/* ---- round solids ---- */
+
+RtStatus rt_solid_add_ellipsoid(RtSolidSet *set, RtVec3 center, RtVec3 radii, uint32_t *index,
+                                RtError *error) {
+    if (!(radii.x > 0 && radii.y > 0 && radii.z > 0))
+        return rt_fail(error, RT_BAD_INPUT, "the radii of an ellipsoid must be above 0; these are %g, %g, %g",
+                       (double)radii.x, (double)radii.y, (double)radii.z);
+    RtTransform to_world = rt_transform_identity();
+    RT_TRY(rt_transform_scale(&to_world, radii, error));
+    RT_TRY(rt_transform_translate(&to_world, center, error));
+    return rt_solid_add_sphere(set, &to_world, index, error);
+}
+
+/* The transform whose z axis is `height` along `axis` and whose x and y axes are `radius` long, all
+ * orthogonal. An axis along a world axis yields axes along world axes. */
+static RtTransform transform_about(RtVec3d origin, RtVec3d axis, double radius, double height) {
+    RtVec3d z = rt_normalized(axis), aside = {{0, 0, 0}};
+    int least = 0;
+    for (int a = 1; a < 3; a++) least = fabs(z.at[a]) < fabs(z.at[least]) ? a : least;
+    aside.at[least] = 1;
+    RtVec3d x = rt_normalized(rt_crossd(aside, z)), y = rt_crossd(z, x);
+    const RtVec3d columns[4] = {rt_scaled(x, radius), rt_scaled(y, radius), rt_scaled(z, height), origin};
+    RtTransform to_world;
+    for (int row = 0; row < 3; row++) {
+        for (int i = 0; i < 4; i++) to_world.m[row][i] = columns[i].at[row];
+    }
+    return to_world;
+}
+
+RtStatus rt_solid_add_frustum(RtSolidSet *set, RtVec3 base, float base_radius, RtVec3 apex, float apex_radius,
+                              uint32_t *index, RtError *error) {
+    RtCone checked;
+    RT_TRY(rt_cone_init(&checked, base, base_radius, apex, apex_radius, error));
+    if (apex_radius > base_radius)
+        return rt_solid_add_frustum(set, apex, apex_radius, base, base_radius, index, error);
+    RtVec3d axis = rt_subd(rt_widen(apex), rt_widen(base));
+    RtTransform to_world = transform_about(rt_widen(base), axis, (double)base_radius, checked.height);
+    return rt_solid_add_cone(set, (double)apex_radius / (double)base_radius, &to_world, index, error);
+}
+
+RtStatus rt_solid_add_ring(RtSolidSet *set, RtVec3 center, RtVec3 axis, float major, float minor,
+                           uint32_t *index, RtError *error) {
+    if (!(minor > 0 && minor < major))
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "a torus needs 0 < minor < major, the radii of its tube and of the circle in it; these "
+            "are %g and %g",
+            (double)minor, (double)major);
+    if (rt_lengthd(rt_widen(axis)) == 0)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "the axis of the torus has length 0: give a direction, as in [0, 0, 1]");
+    RtTransform to_world = transform_about(rt_widen(center), rt_widen(axis), (double)major, (double)major);
+    return rt_solid_add_torus(set, (double)minor / (double)major, &to_world, index, error);
+}
+
+/* ---- convex hulls ----
+ *
+ * Tries the plane of each three points. Most planes are discarded
  * at once, having a point on either side; the rest are faces. Each face is found once per triple of its
  * vertices, and kept once.
  *
  * Points have been rounded to float32, so four vertices of a face need not be coplanar: all points within
  * `close` of a plane belong to the face. Its plane is then that of the three of them that span the most,
  * so that a sliver does not tilt it, moved outward to contain all points. */
-#include "core/base/memory.h"
-#include "core/shape/solid_parts.h"
 
 typedef struct Cloud {
     const RtVec3 *points;
@@ -127,15 +212,13 @@ RtStatus rt_solid_add_hull(RtSolidSet *set, const RtVec3 *vertices, uint32_t cou
         return rt_fail(error, RT_BAD_INPUT, "vertex %u of the polyhedron is not finite", i);
     }
     Cloud cloud = {vertices, count, closeness(vertices, count)};
-    RtPlane *planes = rt_alloc(RT_SOLID_MAX_FACES, sizeof *planes);
-    if (!planes)
-        return rt_fail_memory(error, "the faces of a polyhedron", RT_SOLID_MAX_FACES * sizeof *planes);
+    RT_ARENA(memory);
+    RtPlane *planes = rt_arena_alloc(&memory, RT_SOLID_MAX_FACES, sizeof *planes);
+    RT_TRY(rt_arena_check(&memory, "the faces of a polyhedron", error));
     uint32_t faces = find_faces(&cloud, planes, RT_SOLID_MAX_FACES);
     RtTransform here = rt_transform_identity();
-    RtStatus status =
-        faces >= 4 ? rt_solid_add_polyhedron(set, planes, faces, &here, index, error)
-                   : rt_fail(error, RT_BAD_INPUT,
-                             "the %u vertices of the polyhedron are in one plane, or nearly so", count);
-    rt_free(planes);
-    return status;
+    if (faces < 4)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "the %u vertices of the polyhedron are in one plane, or nearly so", count);
+    return rt_solid_add_polyhedron(set, planes, faces, &here, index, error);
 }
