@@ -39,10 +39,6 @@ static RtStatus append_cone(const Append *a, uint32_t material, const RtCone *co
                              (float)((double)cone->apex_radius * a->scale), a->error);
 }
 
-static RtStatus append_polygon(const Append *a, uint32_t material, const RtPolygon *polygon) {
-    return rt_scene_add_polygon(a->to, material, a->vertices + polygon->first, polygon->count, a->error);
-}
-
 static RtStatus append_triangle(const Append *a, uint32_t material, uint32_t index) {
     const RtGeometry *g = &a->from->geometry;
     uint32_t entry = g->triangle_normals ? g->triangle_normals[index] : RT_NO_NORMALS;
@@ -62,7 +58,9 @@ static RtStatus append_object(const Append *a, uint32_t id) {
     uint32_t index = rt_ref_index(g->objects[id]), material = a->materials[a->from->material_of[id]];
     switch (rt_ref_shape(g->objects[id])) {
     case RT_SHAPE_SPHERE: return append_sphere(a, material, &g->spheres[index]);
-    case RT_SHAPE_POLYGON: return append_polygon(a, material, &g->polygons[index]);
+    case RT_SHAPE_POLYGON:
+        return rt_scene_add_polygon(a->to, material, a->vertices + g->polygons[index].first,
+                                    g->polygons[index].count, a->error);
     case RT_SHAPE_TRIANGLE: return append_triangle(a, material, index);
     case RT_SHAPE_CONE: return append_cone(a, material, &g->cones[index]);
     case RT_SHAPE_CSG: return rt_scene_copy_csg(a->to, a->from, index, a->materials, a->transform, a->error);

@@ -142,10 +142,6 @@ RtStatus rt_scene_copy_csg(RtScene *scene, const RtScene *from, uint32_t index, 
     return RT_OK;
 }
 
-static bool same_point(RtVec3 a, RtVec3 b) {
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 /* The nearest point that is a valid ray origin. */
 static RtVec3 within_bounds(RtVec3d p) {
     RtVec3 q;
@@ -179,7 +175,8 @@ RtStatus rt_scene_finish(RtScene *scene, RtError *error) {
             sizeof(uint32_t));
     RT_TRY(rt_geometry_finish(&scene->geometry, error));
     RtCamera *camera = &scene->camera;
-    if (same_point(camera->from, camera->at)) place_camera(camera, &scene->geometry.box);
+    const RtVec3 from = camera->from, at = camera->at;
+    if (from.x == at.x && from.y == at.y && from.z == at.z) place_camera(camera, &scene->geometry.box);
     if (scene->light_count == 0) {
         RtVec3d above = rt_scaled(rt_widen(camera->up),
                                   0.5 * rt_lengthd(rt_subd(rt_widen(camera->from), rt_widen(camera->at))));

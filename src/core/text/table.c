@@ -52,34 +52,6 @@ static bool is_measured(const RtTableColumn *column) {
 
 /* ---- fields ---- */
 
-RtField rt_field_missing(void) {
-    return (RtField){.is = RT_FIELD_MISSING};
-}
-
-RtField rt_field_text(const char *text) {
-    return (RtField){.is = text ? RT_FIELD_TEXT : RT_FIELD_MISSING, .text = text};
-}
-
-RtField rt_field_flag(bool flag) {
-    return (RtField){.is = RT_FIELD_FLAG, .integer = flag};
-}
-
-RtField rt_field_integer(uint64_t integer) {
-    return (RtField){.is = RT_FIELD_INTEGER, .integer = integer};
-}
-
-RtField rt_field_real(double real) {
-    return (RtField){.is = isfinite(real) ? RT_FIELD_REAL : RT_FIELD_MISSING, .real = real};
-}
-
-RtField rt_field_interval(double value, double low, double high) {
-    return (RtField){.is = RT_FIELD_INTERVAL, .real = value, .low = low, .high = high};
-}
-
-RtField rt_field_same(RtField field) {
-    return field;
-}
-
 RtField rt_field_print(const char *format, ...) {
     RtField field = {.is = RT_FIELD_TEXT};
     va_list args;
@@ -327,15 +299,10 @@ void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out
     write_row(&(Writer){.table = table, .put = put_text, .out = out, .widths = widths}, row);
 }
 
-static size_t column_count(const RtTable *table) {
-    size_t count = 0;
-    for (size_t g = 0; g < table->group_count; g++) count += table->groups[g].count;
-    return count;
-}
-
 bool rt_table_part(const RtTable *table, const int widths[RT_MAX_TABLE_COLUMNS], int page, size_t *next,
                    int part[RT_MAX_TABLE_COLUMNS]) {
-    const size_t count = column_count(table);
+    size_t count = 0;
+    for (size_t g = 0; g < table->group_count; g++) count += table->groups[g].count;
     size_t end = *next > 0 ? *next : 1;
     int left = page - widths[0];
     if (*next == count) return false;
