@@ -5,7 +5,6 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
-#include "core/scene/append.h"
 #include "core/scene/formula.h"
 #include "core/scene/mesh.h"
 #include "core/scene/yaml.h"
