@@ -135,18 +135,14 @@ static RtStatus read_property(Ply *ply) {
 }
 
 static RtStatus read_header_line(Ply *ply, RtWord word) {
-    static const struct {
-        const char *word;
-        RtStatus (*read)(Ply *ply);
-    } lines[] = {{"format", read_format}, {"element", read_element}, {"property", read_property}};
-    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
-        if (rt_scan_is(word, lines[i].word)) return lines[i].read(ply);
-    }
-    if (rt_scan_is(word, "comment") || rt_scan_is(word, "obj_info")) {
-        rt_scan_skip_line(&ply->mesh->text);
-        return RT_OK;
-    }
-    return rt_scan_fail(&ply->mesh->text, word, "format, element, property, comment, obj_info or end_header");
+    if (rt_scan_is(word, "format")) return read_format(ply);
+    if (rt_scan_is(word, "element")) return read_element(ply);
+    if (rt_scan_is(word, "property")) return read_property(ply);
+    if (!rt_scan_is(word, "comment") && !rt_scan_is(word, "obj_info"))
+        return rt_scan_fail(&ply->mesh->text, word,
+                            "format, element, property, comment, obj_info or end_header");
+    rt_scan_skip_line(&ply->mesh->text);
+    return RT_OK;
 }
 
 /* A vertex has coordinates, a face has a list of vertices, and the vertices come first. */
