@@ -202,10 +202,6 @@ static void cell_corners(const RtGridMesh *grid, const Mesh *mesh, uint32_t colu
  * the last. */
 static const unsigned char halves[2][3] = {{0, 1, 2}, {2, 3, 0}};
 
-static bool is_left_out(const RtGridMesh *grid, uint32_t row, int half) {
-    return half == 0 ? grid->first_pole && row == 0 : grid->last_pole && row + 1 == grid->rows;
-}
-
 static void add_to(RtVec3 *sum, RtVec3 a) {
     *sum = rt_add(*sum, a);
 }
@@ -240,7 +236,8 @@ static void add_cells(RtSceneBuilder *b, const RtGridMesh *grid, const Mesh *mes
             uint32_t corners[4];
             cell_corners(grid, mesh, column, row, corners);
             for (int half = 0; half < 2; half++) {
-                if (is_left_out(grid, row, half)) continue;
+                if (half == 0 ? grid->first_pole && row == 0 : grid->last_pole && row + 1 == grid->rows)
+                    continue;
                 RtVec3 vertices[3], normals[3];
                 for (int i = 0; i < 3; i++) {
                     uint32_t corner = corners[halves[half][i]];

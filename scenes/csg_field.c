@@ -95,14 +95,9 @@ static RtStatus add_tree(Field *f, uint32_t solids, uint32_t level, RtCsgTerm *t
     return rt_csg_combine(&f->builder, op, left, right, term, f->error);
 }
 
-static uint64_t trees_along_edge(uint64_t n) {
-    uint64_t edge = 1;
-    while (edge * edge * edge < n) edge++;
-    return edge;
-}
-
 static void add_object(RtSceneBuilder *b, uint64_t i, const RtValue *values) {
-    uint64_t edge = trees_along_edge((uint64_t)values[N].i);
+    uint64_t edge = 1; /* trees along it */
+    while (edge * edge * edge < (uint64_t)values[N].i) edge++;
     double spacing = 2 / (double)edge;
     Field f = {.random = rt_random((uint64_t)values[SEED].i, i), .radius = 0.55 * spacing, .error = b->error};
     uint64_t place[3] = {i % edge, i / edge % edge, i / edge / edge};

@@ -2,7 +2,6 @@
 #include "verify/failure.h"
 
 #include "core/base/memory.h"
-#include "core/scene/append.h"
 
 #include <string.h>
 

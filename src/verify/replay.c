@@ -4,7 +4,6 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/versions.h"
-#include "core/scene/append.h"
 #include "core/scene/yaml.h"
 #include "core/text/json.h"
 #include "scenes/builtin.h"

@@ -188,7 +188,7 @@ static void ask_native(const char *scene_spec, const char *spec, RtRay ray, RtAn
     OWNED_SCENE scene = open_scene(scene_spec);
     RtFailure failure = {.spec = spec, .rays = &ray, .count = 1, .stream = 1};
     failure.occluded = ray.kind == RT_RAY_OCCLUSION;
-    assert_ok(rt_failure_ask(&failure, &scene, rt_accel_builder_of_spec(spec), answer, error));
+    assert_ok(rt_failure_ask(&failure, &scene, answer, error));
 }
 
 /* Margins, but for the needle: a fault that tests/verify/faults.tsv lists. */

@@ -4,7 +4,6 @@
 #include "accel_testing.h"
 #include "csg_testing.h"
 
-#include "core/scene/append.h"
 #include "render/illumination.h"
 
 /* ---- helpers ---- */

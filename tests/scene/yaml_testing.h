@@ -6,7 +6,6 @@
 
 #include "scene_testing.h"
 
-#include "core/scene/append.h"
 #include "core/scene/yaml.h"
 #include "scenes/builtin.h"
 

@@ -262,23 +262,6 @@ static RtStatus read_pieces(FILE *file, const char *path, bool text, char *buffe
     return RT_OK;
 }
 
-static RtStatus read_all(FILE *file, const char *path, bool text, size_t limit, char **data, size_t *size,
-                         RtError *error) {
-    struct stat info;
-    if (fstat(fileno(file), &info) != 0) return fail_io(error, "reading", path);
-    if ((uint64_t)info.st_size > limit)
-        return rt_fail(error, RT_BAD_INPUT, "%s: %lld bytes are too many: the limit is %zu", path,
-                       (long long)info.st_size, limit);
-    char *buffer = rt_alloc_unset((size_t)info.st_size + 1, 1);
-    if (!buffer) return rt_fail_memory(error, path, (size_t)info.st_size + 1);
-    RtStatus status = read_pieces(file, path, text, buffer, (size_t)info.st_size, size, error);
-    if (status == RT_OK)
-        *data = buffer;
-    else
-        rt_free(buffer);
-    return status;
-}
-
 RtStatus rt_file_open(const char *path, FILE **file, RtError *error) {
     struct stat info;
     /* Checked before opening, because opening a pipe waits for a writer. */
@@ -293,12 +276,25 @@ RtStatus rt_file_open(const char *path, FILE **file, RtError *error) {
 
 static RtStatus read_file(const char *path, bool text, size_t limit, char **data, size_t *size,
                           RtError *error) {
+    struct stat info;
+    FILE *file;
+    RtStatus status;
     *data = NULL;
     *size = 0;
-    FILE *file;
     RT_TRY(rt_file_open(path, &file, error));
-    RtStatus status = read_all(file, path, text, limit, data, size, error);
+    if (fstat(fileno(file), &info) != 0)
+        status = fail_io(error, "reading", path);
+    else if ((uint64_t)info.st_size > limit)
+        status = rt_fail(error, RT_BAD_INPUT, "%s: %lld bytes are too many: the limit is %zu", path,
+                         (long long)info.st_size, limit);
+    else if (!(*data = rt_alloc_unset((size_t)info.st_size + 1, 1)))
+        status = rt_fail_memory(error, path, (size_t)info.st_size + 1);
+    else
+        status = read_pieces(file, path, text, *data, (size_t)info.st_size, size, error);
     fclose(file);
+    if (status == RT_OK) return RT_OK;
+    rt_free(*data);
+    *data = NULL;
     return status;
 }
 

@@ -20,10 +20,6 @@ static const char *piece(const char *list, size_t n, size_t *length) {
     return NULL;
 }
 
-static bool equal(const char *word, const char *text, size_t length) {
-    return strlen(word) == length && strncmp(word, text, length) == 0;
-}
-
 /* ---- values to text ---- */
 
 void rt_param_format(const RtParam *param, RtValue value, char *out, size_t size) {
@@ -135,7 +131,7 @@ static bool parse_value(const RtParam *param, const char *text, RtValue *out) {
         size_t length;
         const char *choice;
         for (uint32_t i = 0; (choice = piece(param->choices, i, &length)); i++) {
-            if (!equal(text, choice, length)) continue;
+            if (strlen(text) != length || strncmp(text, choice, length) != 0) continue;
             *out = (RtValue){.choice = i};
             return true;
         }

@@ -276,12 +276,6 @@ static void end_group(pid_t group, RtProcessEnd *end) {
     kill(-group, SIGKILL);
 }
 
-/* Until it has ended, or for so many milliseconds. */
-static void pause_for(const RtProcess *process, int milliseconds) {
-    struct pollfd ended = {.fd = process->descriptor, .events = POLLIN};
-    poll(&ended, 1, milliseconds < PAUSE || process->descriptor >= 0 ? milliseconds : PAUSE);
-}
-
 bool rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end) {
     const double until = milliseconds < 0 ? INFINITY : rt_wall_seconds() + milliseconds / 1000.0;
     *end = (RtProcessEnd){.code = -1};
@@ -289,7 +283,8 @@ bool rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end) {
     while (!has_ended(process, WNOWAIT, end)) {
         double left = until - rt_wall_seconds();
         if (left <= 0) return false;
-        pause_for(process, (int)(fmin(left, 60) * 1000) + 1);
+        const int pause = (int)(fmin(left, process->descriptor >= 0 ? 60 : 1e-3 * PAUSE) * 1000) + 1;
+        poll(&(struct pollfd){.fd = process->descriptor, .events = POLLIN}, 1, pause);
     }
     while (atomic_load(&stopping)) pause();
     relist(listed_id(process), 0); /* before its id may become another's */

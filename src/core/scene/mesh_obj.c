@@ -80,16 +80,13 @@ static RtStatus read_face(RtMeshReader *r) {
 }
 
 static RtStatus read_statement(RtMeshReader *r, RtWord word) {
-    static const struct {
-        const char *word;
-        RtStatus (*read)(RtMeshReader *r);
-    } statements[] = {{"v", read_vertex}, {"vn", read_normal}, {"vt", read_texture}, {"f", read_face}};
     static const char *const skipped[] = {"o",        "g",        "s",  "mg",         "usemtl",   "mtllib",
                                           "usemap",   "maplib",   "p",  "l",          "bevel",    "lod",
                                           "c_interp", "d_interp", "vp", "shadow_obj", "trace_obj"};
-    for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++) {
-        if (rt_scan_is(word, statements[i].word)) return statements[i].read(r);
-    }
+    if (rt_scan_is(word, "v")) return read_vertex(r);
+    if (rt_scan_is(word, "vn")) return read_normal(r);
+    if (rt_scan_is(word, "vt")) return read_texture(r);
+    if (rt_scan_is(word, "f")) return read_face(r);
     for (size_t i = 0; i < sizeof skipped / sizeof skipped[0]; i++) {
         if (!rt_scan_is(word, skipped[i])) continue;
         rt_scan_skip_line(&r->text);

@@ -134,24 +134,15 @@ static RtStatus read_property(Ply *ply) {
     return RT_OK;
 }
 
-static RtStatus skip(Ply *ply) {
+static RtStatus read_header_line(Ply *ply, RtWord word) {
+    if (rt_scan_is(word, "format")) return read_format(ply);
+    if (rt_scan_is(word, "element")) return read_element(ply);
+    if (rt_scan_is(word, "property")) return read_property(ply);
+    if (!rt_scan_is(word, "comment") && !rt_scan_is(word, "obj_info"))
+        return rt_scan_fail(&ply->mesh->text, word,
+                            "format, element, property, comment, obj_info or end_header");
     rt_scan_skip_line(&ply->mesh->text);
     return RT_OK;
-}
-
-static RtStatus read_header_line(Ply *ply, RtWord word) {
-    static const struct {
-        const char *word;
-        RtStatus (*read)(Ply *ply);
-    } lines[] = {{"format", read_format},
-                 {"element", read_element},
-                 {"property", read_property},
-                 {"comment", skip},
-                 {"obj_info", skip}};
-    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
-        if (rt_scan_is(word, lines[i].word)) return lines[i].read(ply);
-    }
-    return rt_scan_fail(&ply->mesh->text, word, "format, element, property, comment, obj_info or end_header");
 }
 
 /* A vertex has coordinates, a face has a list of vertices, and the vertices come first. */
@@ -276,16 +267,13 @@ static RtStatus take_element(Ply *ply, const Element *element) {
     return rt_mesh_add_vertex(ply->mesh, rt_narrow(rt_vec3d(at[X], at[Y], at[Z])));
 }
 
-static bool at_end(const Ply *ply) {
-    RtScanner *text = &ply->mesh->text;
-    return ply->binary ? text->at == text->end : rt_scan_peek(text).length == 0;
-}
-
 static RtStatus read_elements(Ply *ply, const Element *element) {
     static const char *const names[] = {"vertices", "faces", "elements"};
     if (element->first == element->end) return RT_OK; /* they take no space */
     for (uint64_t i = 0; i < element->count; i++) {
-        if (at_end(ply)) return rt_mesh_fail_short(ply->mesh, i, element->count, names[element->kind]);
+        RtScanner *text = &ply->mesh->text;
+        if (ply->binary ? text->at == text->end : rt_scan_peek(text).length == 0)
+            return rt_mesh_fail_short(ply->mesh, i, element->count, names[element->kind]);
         RT_TRY(take_element(ply, element));
     }
     return RT_OK;

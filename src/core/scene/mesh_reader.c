@@ -81,12 +81,6 @@ static RtVec3d twice_area(const RtMeshReader *r, uint32_t a, uint32_t b, uint32_
     return rt_area_vector(vertex_of(r, a), vertex_of(r, b), vertex_of(r, c));
 }
 
-static RtVec3d polygon_area(const RtMeshReader *r) {
-    RtVec3d whole = {0, 0, 0};
-    for (uint32_t i = 1; i + 1 < r->corner_count; i++) whole = rt_addd(whole, twice_area(r, 0, i, i + 1));
-    return whole;
-}
-
 /* Whether no triangle of the fan around the first corner has the wrong orientation; all have no area if the
  * whole has none. */
 static bool first_sees_all(const RtMeshReader *r, RtVec3d whole) {
@@ -154,20 +148,17 @@ static RtStatus cut_ears(RtMeshReader *r, RtVec3d whole) {
     return RT_OK;
 }
 
-static RtStatus add_fan(RtMeshReader *r) {
-    for (uint32_t i = 1; i + 1 < r->corner_count; i++) {
-        const RtMeshCorner triangle[3] = {r->corners[0], r->corners[i], r->corners[i + 1]};
-        RT_TRY(add_triangle(r, triangle));
-    }
-    return RT_OK;
-}
-
 RtStatus rt_mesh_add_polygon(RtMeshReader *r) {
     if (r->corner_count < 3)
         return rt_mesh_fail(r, "face %u (counted from 0) has %u vertices: a polygon has at least 3",
                             r->face_count, r->corner_count);
-    const RtVec3d whole = polygon_area(r);
-    RT_TRY(first_sees_all(r, whole) ? add_fan(r) : cut_ears(r, whole));
+    RtVec3d whole = {0, 0, 0};
+    for (uint32_t i = 1; i + 1 < r->corner_count; i++) whole = rt_addd(whole, twice_area(r, 0, i, i + 1));
+    if (!first_sees_all(r, whole)) RT_TRY(cut_ears(r, whole));
+    for (uint32_t i = 1; i + 1 < r->corner_count; i++) {
+        const RtMeshCorner triangle[3] = {r->corners[0], r->corners[i], r->corners[i + 1]};
+        RT_TRY(add_triangle(r, triangle));
+    }
     r->corner_count = 0;
     r->face_count++;
     return RT_OK;

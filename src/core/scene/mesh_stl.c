@@ -12,15 +12,11 @@ static uint64_t binary_size(const void *bytes) {
     return RT_MESH_HEAD + (uint64_t)FACET * rt_mesh_u32((const char *)bytes + HEADER);
 }
 
-static bool is_text(const void *bytes) {
-    return strncmp(bytes, "solid", 5) == 0;
-}
-
 /* A binary file may begin with "solid", too: its size decides. */
 RtStatus rt_mesh_check_stl(RtMeshReader *r, const RtMeshHead *head) {
     const bool zeros = memchr(head->bytes, 0, head->size < RT_MESH_HEAD ? (size_t)head->size : RT_MESH_HEAD);
     if (head->size >= RT_MESH_HEAD && head->size == binary_size(head->bytes)) return RT_OK;
-    if (is_text(head->bytes) && !zeros) return RT_OK;
+    if (memcmp(head->bytes, "solid", 5) == 0 && !zeros) return RT_OK;
     if (head->size < RT_MESH_HEAD)
         return rt_mesh_fail(r,
                             "this is no STL file: it does not begin with 'solid', and has no binary header");

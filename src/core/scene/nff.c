@@ -66,12 +66,8 @@ static RtStatus read_number(Reader *r, const char *what, float *narrow, double *
     return RT_OK;
 }
 
-static RtStatus read_float(Reader *r, const char *what, float *out) {
-    return read_number(r, what, out, NULL);
-}
-
-static RtStatus read_vector(Reader *r, const char *what, RtVec3 *out) {
-    for (int a = 0; a < 3; a++) RT_TRY(read_float(r, what, &out->at[a]));
+static RtStatus read_floats(Reader *r, const char *what, int count, float *out) {
+    for (int i = 0; i < count; i++) RT_TRY(read_number(r, what, &out[i], NULL));
     return RT_OK;
 }
 
@@ -116,11 +112,11 @@ static RtStatus read_camera(Reader *r) {
         rt_scan_take(&r->text, next);
         given[word] = true;
         switch (word) {
-        case FROM: RT_TRY(read_vector(r, "from x y z", &camera->from)); break;
-        case AT: RT_TRY(read_vector(r, "at x y z", &camera->at)); break;
-        case UP: RT_TRY(read_vector(r, "up x y z", &camera->up)); break;
-        case ANGLE: RT_TRY(read_float(r, "angle in degrees", &camera->fov)); break;
-        case HITHER: RT_TRY(read_float(r, "hither", &camera->near)); break;
+        case FROM: RT_TRY(read_floats(r, "from x y z", 3, camera->from.at)); break;
+        case AT: RT_TRY(read_floats(r, "at x y z", 3, camera->at.at)); break;
+        case UP: RT_TRY(read_floats(r, "up x y z", 3, camera->up.at)); break;
+        case ANGLE: RT_TRY(read_floats(r, "angle in degrees", 1, &camera->fov)); break;
+        case HITHER: RT_TRY(read_floats(r, "hither", 1, &camera->near)); break;
         case RESOLUTION:
             RT_TRY(read_count(r, "resolution x", 1, RT_MAX_IMAGE_SIDE, &camera->width));
             RT_TRY(read_count(r, "resolution y", 1, RT_MAX_IMAGE_SIDE, &camera->height));
@@ -138,13 +134,13 @@ static RtStatus read_camera(Reader *r) {
 
 static RtStatus read_light(Reader *r) {
     RtVec3 position, color = {0, 0, 0};
-    RT_TRY(read_vector(r, "l x y z, the position of a light", &position));
+    RT_TRY(read_floats(r, "l x y z, the position of a light", 3, position.at));
     bool plain = !number_follows(r);
     if (plain)
         RT_TRY(rt_append(&r->plain, &r->plain_count, &r->plain_capacity, &r->scene->light_count,
                          sizeof(uint32_t), r->text.error));
     else
-        RT_TRY(read_vector(r, "l x y z r g b, the colour of a light", &color));
+        RT_TRY(read_floats(r, "l x y z r g b, the colour of a light", 3, color.at));
     return located(r, rt_scene_add_light(r->scene, position, color, r->text.error));
 }
 
@@ -169,14 +165,11 @@ static bool same_material(const RtMaterial *a, const RtMaterial *b) {
 }
 
 static RtStatus read_material(Reader *r) {
-    static const char *const what = "a number of f r g b Kd Ks shine T ior";
-    RtVec3 color;
-    float k[5];
-    RT_TRY(read_vector(r, what, &color));
-    for (int i = 0; i < 5; i++) RT_TRY(read_float(r, what, &k[i]));
+    float f[8];
+    RT_TRY(read_floats(r, "a number of f r g b Kd Ks shine T ior", 8, f));
     char name[RT_MAX_NAME];
     snprintf(name, sizeof name, "line %zu", r->statement);
-    RtMaterial material = rt_nff_material(name, color, k[0], k[1], k[2], k[3], k[4]);
+    RtMaterial material = rt_nff_material(name, rt_vec3_load(f), f[3], f[4], f[5], f[6], f[7]);
 
     /* Files often switch between a few materials, and repeat each in full. */
     uint32_t count = r->scene->material_count;
@@ -198,26 +191,19 @@ static RtStatus use_material(Reader *r) {
 /* ---- objects ---- */
 
 static RtStatus read_sphere(Reader *r) {
-    static const char *const what = "a number of s x y z radius";
-    RtVec3 center;
-    float radius;
-    RT_TRY(read_vector(r, what, &center));
-    RT_TRY(read_float(r, what, &radius));
+    float s[4];
+    RT_TRY(read_floats(r, "a number of s x y z radius", 4, s));
     RT_TRY(use_material(r));
-    return located(r, rt_scene_add_sphere(r->scene, r->material, center, fabsf(radius), r->text.error));
+    return located(r,
+                   rt_scene_add_sphere(r->scene, r->material, rt_vec3_load(s), fabsf(s[3]), r->text.error));
 }
 
 static RtStatus read_cone(Reader *r) {
-    static const char *const what = "a number of c base.x y z base.radius apex.x y z apex.radius";
-    RtVec3 ends[2];
-    float radii[2];
-    for (int i = 0; i < 2; i++) {
-        RT_TRY(read_vector(r, what, &ends[i]));
-        RT_TRY(read_float(r, what, &radii[i]));
-    }
+    float c[8];
+    RT_TRY(read_floats(r, "a number of c base.x y z base.radius apex.x y z apex.radius", 8, c));
     RT_TRY(use_material(r));
-    return located(r, rt_scene_add_cone(r->scene, r->material, ends[0], fabsf(radii[0]), ends[1],
-                                        fabsf(radii[1]), r->text.error));
+    return located(r, rt_scene_add_cone(r->scene, r->material, rt_vec3_load(c), fabsf(c[3]),
+                                        rt_vec3_load(c + 4), fabsf(c[7]), r->text.error));
 }
 
 /* Reads n and the n vertices of a polygon, or of a patch with their normals. */
@@ -234,8 +220,8 @@ static RtStatus read_vertices(Reader *r, bool patch, uint32_t *count) {
     RT_TRY(rt_reserve(&r->vertices, &r->vertex_capacity, *count, sizeof(RtVec3), r->text.error));
     if (patch) RT_TRY(rt_reserve(&r->normals, &r->normal_capacity, *count, sizeof(RtVec3), r->text.error));
     for (uint32_t i = 0; i < *count; i++) {
-        RT_TRY(read_vector(r, what, &r->vertices[i]));
-        if (patch) RT_TRY(read_vector(r, what, &r->normals[i]));
+        RT_TRY(read_floats(r, what, 3, r->vertices[i].at));
+        if (patch) RT_TRY(read_floats(r, what, 3, r->normals[i].at));
     }
     return use_material(r);
 }
@@ -282,7 +268,7 @@ static RtStatus read_patch(Reader *r) {
 
 static RtStatus read_background(Reader *r) {
     RtVec3 color;
-    RT_TRY(read_vector(r, "a number of b r g b", &color));
+    RT_TRY(read_floats(r, "a number of b r g b", 3, color.at));
     if (color.x < 0 || color.y < 0 || color.z < 0)
         return fail_statement(r,
                               "the background has a negative colour: expected at least 0 for each of r g b");

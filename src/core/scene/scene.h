@@ -95,6 +95,18 @@ RtStatus rt_scene_finish(RtScene *scene, RtError *error);
 RtStatus rt_scene_sample(RtScene *scene, uint32_t width, uint32_t height, uint32_t samples, bool corners,
                          RtError *error);
 
+/* Appends the objects of `from` in order, moved by `transform` (NULL: in place), with their materials; a
+ * material that `to` already has, name included, is shared. Lights and camera are not copied. Spheres and
+ * cones are rejected under a transform that scales unevenly; CSG trees accept any. After a failure `to`
+ * may contain some of the objects. */
+RtStatus rt_scene_append(RtScene *to, const RtScene *from, const RtTransform *transform, RtError *error);
+
+/* Creates the finished scene *to from the objects ids[0..count) of the finished scene `from`, in that
+ * order, with its lights, camera and sampling. The caller owns it. Its hits are those of `from`, bit for
+ * bit. */
+RtStatus rt_scene_subset(const RtScene *from, const uint32_t *ids, uint32_t count, RtScene *to,
+                         RtError *error);
+
 /* A hash of everything that can change an answer or a picture (geometry, materials, lights, camera; not
  * the sampling). It allocates nothing, so it cannot fail. */
 uint64_t rt_scene_fingerprint(const RtScene *scene);

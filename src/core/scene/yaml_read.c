@@ -5,7 +5,6 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
-#include "core/scene/append.h"
 #include "core/scene/formula.h"
 #include "core/scene/mesh.h"
 #include "core/scene/yaml.h"
@@ -209,30 +208,20 @@ static RtStatus solid_sphere(Reader *r, const RtYamlNode *n, uint32_t *index) {
                          "center");
 }
 
-typedef RtStatus AddPair(RtSolidSet *set, RtVec3 first, RtVec3 second, uint32_t *index, RtError *error);
+/* Solids given by two points or vectors. */
+static const struct Pair {
+    const char *kind, *keys, *first, *second;
+    RtStatus (*add)(RtSolidSet *set, RtVec3 first, RtVec3 second, uint32_t *index, RtError *error);
+} pairs[] = {{"ellipsoid", "center radii material?", "center", "radii", rt_solid_add_ellipsoid},
+             {"box", "lo hi material?", "lo", "hi", rt_solid_add_box},
+             {"half_space", "point normal material?", "point", "normal", rt_solid_add_half_space}};
 
-/* Adds a solid given by two points or vectors. */
-static RtStatus add_pair(Reader *r, const RtYamlNode *n, const char *first, const char *second, AddPair *add,
-                         uint32_t *index) {
-    char keys[64];
-    RtVec3 pair[2] = {{0}};
-    snprintf(keys, sizeof keys, "%s %s material?", first, second);
-    RT_TRY(rt_yaml_keys(&r->yaml, n, keys));
-    RT_TRY(rt_yaml_point(&r->yaml, n, first, &pair[0]));
-    RT_TRY(rt_yaml_point(&r->yaml, n, second, &pair[1]));
-    return rt_yaml_place(&r->yaml, add(&r->builder.set, pair[0], pair[1], index, r->error), n, NULL);
-}
-
-static RtStatus solid_ellipsoid(Reader *r, const RtYamlNode *n, uint32_t *index) {
-    return add_pair(r, n, "center", "radii", rt_solid_add_ellipsoid, index);
-}
-
-static RtStatus solid_box(Reader *r, const RtYamlNode *n, uint32_t *index) {
-    return add_pair(r, n, "lo", "hi", rt_solid_add_box, index);
-}
-
-static RtStatus solid_half_space(Reader *r, const RtYamlNode *n, uint32_t *index) {
-    return add_pair(r, n, "point", "normal", rt_solid_add_half_space, index);
+static RtStatus solid_pair(Reader *r, const RtYamlNode *n, const struct Pair *pair, uint32_t *index) {
+    RtVec3 first = {0}, second = {0};
+    RT_TRY(rt_yaml_keys(&r->yaml, n, pair->keys));
+    RT_TRY(rt_yaml_point(&r->yaml, n, pair->first, &first));
+    RT_TRY(rt_yaml_point(&r->yaml, n, pair->second, &second));
+    return rt_yaml_place(&r->yaml, pair->add(&r->builder.set, first, second, index, r->error), n, NULL);
 }
 
 static RtStatus solid_round(Reader *r, const RtYamlNode *n, bool cylinder, uint32_t *index) {
@@ -398,9 +387,8 @@ static RtStatus move(Reader *r, const RtYamlNode *n, RtCsgTerm *term) {
 
 /* ---- the list ---- */
 
-#define SOLIDS(X)                                                                                            \
-    X(sphere)                                                                                                \
-    X(ellipsoid) X(box) X(cylinder) X(cone) X(torus) X(half_space) X(polyhedron) X(mesh) X(facets) X(standard)
+/* The others. */
+#define SOLIDS(X) X(sphere) X(cylinder) X(cone) X(torus) X(polyhedron) X(mesh) X(facets) X(standard)
 
 /* Adds a solid of any kind. */
 static RtStatus solid_kind(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) {
@@ -414,6 +402,11 @@ static RtStatus solid_kind(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) 
     }
     SOLIDS(ADD)
 #undef ADD
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+        if (!(n = rt_yaml_get(&r->yaml, entry, pairs[i].kind))) continue;
+        RT_TRY(find_material(r, n, &material));
+        RT_TRY(solid_pair(r, n, &pairs[i], &index));
+    }
     return rt_csg_solid(&r->builder, index, material, term, r->error);
 }
 
@@ -431,8 +424,8 @@ static RtStatus add_solid(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) {
 
 static RtStatus add_solids(Reader *r, const RtYamlNode *list) {
     uint32_t count = rt_yaml_count(list);
-    RT_TRY(read_names(r, list, "name formula| " SOLIDS(ONE_OF) "transform?", RT_FORMULA_MAX_NAME - 1,
-                      "solids", &r->solids));
+    RT_TRY(read_names(r, list, "name formula| ellipsoid| box| half_space| " SOLIDS(ONE_OF) "transform?",
+                      RT_FORMULA_MAX_NAME - 1, "solids", &r->solids));
     r->terms = rt_arena_alloc(&r->memory, count, sizeof *r->terms);
     RT_TRY(rt_arena_check(&r->memory, "the solids", r->error));
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {

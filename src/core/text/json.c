@@ -34,12 +34,6 @@ json_t *rt_json_number(double value) {
     return isfinite(value) ? json_real(value) : json_null();
 }
 
-json_t *rt_json_ratio_end(double value) {
-    if (value > 1 && value < 1 + 1e-8) value = 1 + 1e-8;
-    if (value < 1 && value > 1 - 1e-9) value = 1 - 1e-9;
-    return rt_json_number(value);
-}
-
 json_t *rt_json_hex(uint64_t value) {
     return json_sprintf("%016" PRIx64, value);
 }

@@ -27,9 +27,6 @@ json_t *rt_json_hex(uint64_t value);
  * is short. */
 json_t *rt_json_add(json_t *json, const char *key, json_t *value);
 
-/* One end of a ratio's interval; if it is not 1, nine digits do not show it as 1. */
-json_t *rt_json_ratio_end(double value);
-
 /* The current date and time, UTC: "2001-04-30T12:00:00Z". */
 json_t *rt_json_now(void);
 
