@@ -30,7 +30,6 @@ typedef struct Root {
     RtKdCell cell;
 } Root;
 
-/* The events of an axis, with room to partition them. */
 static RtStatus make_axis(void *context, size_t axis, int thread, RtError *error) {
     Root *root = context;
     RtKdBuilder *b = root->builder;
@@ -163,11 +162,6 @@ static void move_lists(RtKdBuilder *from, RtKdBuilder *to) {
     from->id_capacity = 0;
 }
 
-static uint64_t bytes_of_lists(const RtKdBuilder *b) {
-    const uint64_t events = (uint64_t)b->event_capacity[0] + b->event_capacity[1] + b->event_capacity[2];
-    return b->id_capacity * sizeof(uint32_t) + events * sizeof(RtKdEvent);
-}
-
 static RtStatus defer(Subtree *s, RtKdCell cell, RtError *error) {
     Subtree *item;
     RtKdBuilder *b = &s->builder;
@@ -179,7 +173,8 @@ static RtStatus defer(Subtree *s, RtKdCell cell, RtError *error) {
         move_lists(b, &item->builder);
     else
         RT_TRY(copy_lists(b, &cell, &item->builder, error));
-    item->list_bytes = bytes_of_lists(&item->builder);
+    item->list_bytes = item->builder.id_capacity * sizeof(uint32_t);
+    for (int a = 0; a < 3; a++) item->list_bytes += item->builder.event_capacity[a] * sizeof(RtKdEvent);
     rt_kd_hold(item->memory.shared, item->list_bytes);
     cell.node = 0;
     item->builder.pending[item->builder.pending_count++] = cell;

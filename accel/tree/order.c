@@ -26,7 +26,6 @@ typedef struct Sorter {
     RtBox *centers_of; /* [chunks] */
 } Sorter;
 
-/* The range of a chunk. */
 static uint32_t chunk_begin(const Sorter *s, size_t chunk) {
     return (uint32_t)chunk * s->chunk_size;
 }

@@ -90,7 +90,6 @@ static uint32_t build(const Sweep *s, uint32_t begin, uint32_t count, int depth)
     return node;
 }
 
-/* The references sorted along an axis. */
 static RtStatus make_row(Sweep *s, const RtGeometry *geometry, int axis, RtArena *memory, RtError *error) {
     const uint32_t count = geometry->object_count;
     RT_ARENA(arena);

@@ -78,13 +78,9 @@ static inline uint32_t rt_tree_leaf_count(const RtTree *tree) {
     return tree->boxes ? tree->used + 1 : (tree->used + 1) / 2;
 }
 
-/* Allocates a node, which the caller fills. */
+/* Allocates a node; makes it a leaf; makes it the parent of a and b. */
 uint32_t rt_tree_take(RtTree *tree);
-
-/* Makes a node a leaf. */
 void rt_tree_set_leaf(RtTree *tree, uint32_t node, RtBox box, uint32_t object);
-
-/* Makes a node the parent of a and b. */
 void rt_tree_set_union(RtTree *tree, uint32_t node, uint32_t a, uint32_t b);
 
 /* Adds a parent of nodes a and b, makes it the root, and returns it. */

@@ -13,7 +13,7 @@ static const RtTreeOptions methods[] = {
     {.method = RT_TREE_BINNED, .spatial.bins = 16},
     {.method = RT_TREE_SWEEP},
     {.method = RT_TREE_LBVH, .bits = 21},
-    {.method = RT_TREE_BINNED, .spatial.bins = 32},
+    {.method = RT_TREE_BINNED, .spatial.bins = 32, .reinsertion = 1, .batch = 0.5},
     {.method = RT_TREE_BINNED, .spatial.bins = 64},
 };
 enum { AGGLOMERATIVE, PLOC, INSERTION, MEDIANS, BINNED, SWEEP, LBVH, METHOD_COUNT, VARIANT_COUNT = 9 };
