@@ -35,9 +35,8 @@ typedef struct Used {
 
 /* The place of a part in the hierarchy. */
 typedef struct Part {
-    uint32_t node; /* its root; unset if the part is inside a leaf */
+    uint32_t node; /* its root; all is 0 if the part is inside a leaf */
     Used used;     /* before it */
-    bool has_node;
 } Part;
 
 typedef struct Layout {
@@ -130,7 +129,7 @@ static void lay_out_subtree(Layout *layout, uint32_t node_index, uint32_t index,
                             Used *used) {
     if (top && !rt_reduction_is_top(layout->tree, index, depth)) {
         const Cost *cost = (const Cost *)(const void *)layout->reduced.values + layout->next;
-        layout->parts[layout->next++] = (Part){node_index, *used, true};
+        layout->parts[layout->next++] = (Part){node_index, *used};
         used->nodes += 2 * cost->leaves - 2;
         used->ids += cost->references;
         return;
@@ -156,7 +155,7 @@ static void lay_out_part(void *context, size_t item) {
     Layout *layout = context;
     const Part *part = &layout->parts[item];
     Used used = part->used;
-    if (part->has_node) lay_out_subtree(layout, part->node, layout->reduced.index[item], false, 0, &used);
+    if (used.nodes > 0) lay_out_subtree(layout, part->node, layout->reduced.index[item], false, 0, &used);
 }
 
 static RtStatus lay_out(RtHierarchy *self, RtArena *memory, RtTree *tree, int threads, RtError *error) {

@@ -93,7 +93,7 @@ RtStatus rt_tree_lbvh(RtTree *tree, const RtGeometry *geometry, const RtTreeOpti
     RT_ARENA(arena);
     Builder builder = {.tree = tree, .boxes = geometry->boxes, .limit = share > CHUNK ? share : CHUNK};
     RT_TRY(rt_tree_init(tree, count, error));
-    RT_TRY(rt_order_morton(geometry->boxes, count, options->bits, threads, &arena, &builder.row, error));
+    RT_TRY(rt_tree_order(geometry, options->bits, 0, threads, &arena, &builder.row, error));
     builder.in_row = rt_arena_alloc_unset(&arena, count, sizeof(RtBox));
     RT_TRY(rt_arena_check(&arena, "a tree by Morton codes", error));
     tree->used = tree->capacity;

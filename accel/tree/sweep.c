@@ -94,7 +94,7 @@ static RtStatus make_row(Sweep *s, const RtGeometry *geometry, int axis, RtArena
     const uint32_t count = geometry->object_count;
     RT_ARENA(arena);
     const RtKeyed *order;
-    RT_TRY(rt_order_axis(geometry->boxes, count, axis, 1, &arena, &order, error));
+    RT_TRY(rt_tree_order(geometry, 0, axis, 1, &arena, &order, error));
     RtTreeRef *row = s->rows[axis] = rt_arena_alloc(memory, count, sizeof(RtTreeRef));
     RT_TRY(rt_arena_check(memory, "the rows of a sweep", error));
     for (uint32_t i = 0; i < count; i++) row[i] = (RtTreeRef){geometry->boxes[order[i].id], order[i].id};
