@@ -21,7 +21,6 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
