@@ -53,7 +53,7 @@ typedef struct RtAccel {
     X(predicted_tests, "expected object tests")                                                              \
     X(predicted_steps, "expected steps")
 
-/* Further quality metrics of hierarchies of boxes (Aila, Karras & Laine 2013; accel/tree/hierarchy_stats.c).
+/* Further quality metrics of hierarchies of boxes (Aila, Karras & Laine 2013; accel/tree/hierarchy.c).
  * NaN for other structures. X(name, meaning). */
 #define RT_QUALITIES(X)                                                                                      \
     X(end_point_overlap,                                                                                     \

@@ -62,7 +62,7 @@ SUBJECTS = {
     "accel/surface.": ("overlap kd", "kd:overlap=exact grid:overlap=exact"),
     "accel/tree/": ("trees descriptions reinsertion bvh_spatial builds clusters",
                     "bvh bvh:build=spatial clusters:method=goldsmith-salmon"),
-    "accel/tree/hierarchy_stats.": ("descriptions bvh_spatial", "bvh bvh:build=spatial"),
+    "accel/tree/hierarchy.": ("descriptions bvh_spatial", "bvh bvh:build=spatial"),
     "accel/tree/reinsertion.": ("reinsertion builds", "bvh:reinsertion=2"),
     "accel/tree/spatial": ("bvh_spatial builds", "bvh:build=spatial"),
     "accel/watertight.": ("watertight lanes wide_layout wide item light_exact", "wide item+bvh light+bvh"),

@@ -39,7 +39,6 @@ static double whole(double x) {
     return floor(x * (1 + 1e-12));
 }
 
-/* The resolution, by the rule, of a grid over a box with so many objects. */
 static void choose_resolution(const RtBox *box, uint32_t objects, const RtValue *values, uint32_t n[3]) {
     RtVec3d s = solid_size(box);
     double voxels = values[RT_GRID_DENSITY].f * objects;
@@ -245,7 +244,6 @@ bool rt_grid_find_voxel(RtGridVoxel *voxel) {
     return true;
 }
 
-/* Of a block with n voxels along each axis. */
 static size_t planes_of(const uint32_t n[3]) {
     return (size_t)n[0] + n[1] + n[2] + 3;
 }
@@ -362,7 +360,6 @@ static RtStatus make_lists(RtGrid *grid, const RtGridLevel *from, RtGridLevel *t
     return RT_OK;
 }
 
-/* Removes the lists of voxels that have been cut. */
 static RtStatus drop_lists(RtGrid *grid, RtGridLevel *level, RtError *error) {
     uint32_t kept = 0;
     for (uint32_t v = 0; v < level->voxel_count; v++) {

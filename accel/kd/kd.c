@@ -25,6 +25,8 @@
 #include "accel/kd/kd.h"
 #include "accel/mailbox.h"
 
+#include <stdlib.h>
+
 /* A pending node, and the interval of t in which the ray is in its cell. */
 typedef struct Span {
     uint32_t node;
@@ -192,17 +194,14 @@ static RtStatus check_node(Check *check, uint32_t index, RtBox cell, uint32_t de
     return RT_OK;
 }
 
+static int by_id(const void *a, const void *b) {
+    const uint32_t *x = a, *y = b;
+    return *x < *y ? -1 : *x > *y;
+}
+
 static bool lists(const RtKd *kd, const RtKdNode *leaf, uint32_t id) {
-    uint32_t from = leaf->first, to = leaf->first + rt_kd_length(leaf);
-    while (from < to) {
-        uint32_t middle = from + (to - from) / 2;
-        if (kd->ids[middle] == id) return true;
-        if (kd->ids[middle] < id)
-            from = middle + 1;
-        else
-            to = middle;
-    }
-    return false;
+    const size_t length = rt_kd_length(leaf);
+    return length > 0 && bsearch(&id, kd->ids + leaf->first, length, sizeof id, by_id) != NULL;
 }
 
 /* Adds to *leaves the number of leaves below a node that must list an object with this part of its cell;

@@ -24,42 +24,33 @@ const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {RT_KD_PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- the root ---- */
 
-typedef struct Root {
-    RtKdBuilder *builder;
-    const RtGeometry *geometry;
-    RtKdCell cell;
-} Root;
-
-/* The events of an axis, with room to partition them. */
 static RtStatus make_axis(void *context, size_t axis, int thread, RtError *error) {
-    Root *root = context;
-    RtKdBuilder *b = root->builder;
-    const RtGeometry *g = root->geometry;
+    RtKdBuilder *b = context;
+    RtKdCell *root = &b->pending[0];
+    const uint32_t count = root->ids.count;
     (void)thread;
-    RT_TRY(rt_reserve(&b->events[axis], &b->event_capacity[axis], 4 * (uint64_t)g->object_count,
-                      sizeof(RtKdEvent), error));
-    root->cell.events[axis].count =
-        rt_kd_make_events(b->ids, g->boxes, g->object_count, &root->cell.box, (int)axis, b->events[axis]);
+    RT_TRY(rt_reserve(&b->events[axis], &b->event_capacity[axis], 4 * (uint64_t)count, sizeof(RtKdEvent),
+                      error));
+    root->events[axis].count = rt_kd_make_events(b->ids, b->kd->base.scene->geometry.boxes, count, &root->box,
+                                                 (int)axis, b->events[axis]);
     return RT_OK;
 }
 
 /* The root's lists, with room to partition them. */
-static RtStatus make_root(RtKdBuilder *b, const RtGeometry *g, int threads, RtError *error) {
-    Root root = {b, g, {.share = 1, .box = b->kd->box, .ids = {0, g->object_count}}};
+static RtStatus make_root(RtKdBuilder *b, uint32_t count, int threads, RtError *error) {
     RT_TRY(rt_reserve(&b->kd->nodes, &b->node_capacity, 1, sizeof(RtKdNode), error));
     b->kd->node_count = 1;
-    RT_TRY(rt_reserve(&b->ids, &b->id_capacity, 2 * (uint64_t)g->object_count, sizeof(uint32_t), error));
-    for (uint32_t i = 0; i < g->object_count; i++) b->ids[i] = i;
-    RT_TRY(rt_parallel_for(3, threads, make_axis, &root, error));
-    b->pending[b->pending_count++] = root.cell;
-    return RT_OK;
+    RT_TRY(rt_reserve(&b->ids, &b->id_capacity, 2 * (uint64_t)count, sizeof(uint32_t), error));
+    for (uint32_t i = 0; i < count; i++) b->ids[i] = i;
+    b->pending[b->pending_count++] = (RtKdCell){.share = 1, .box = b->kd->box, .ids = {0, count}};
+    return rt_parallel_for(3, threads, make_axis, b, error);
 }
 
-static RtStatus build_on_one(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
+static RtStatus build_on_one(RtKdBuilder *b, uint32_t objects, RtError *error) {
     const uint32_t asked = b->kd->max_depth;
-    b->sides = rt_alloc(g->object_count, 1);
-    if (!b->sides) return rt_fail_memory(error, "building a kd-tree", g->object_count);
-    RT_TRY(make_root(b, g, 1, error));
+    b->sides = rt_alloc(objects, 1);
+    if (!b->sides) return rt_fail_memory(error, "building a kd-tree", objects);
+    RT_TRY(make_root(b, objects, 1, error));
     while (b->pending_count > 0) {
         RtKdCell cell = b->pending[--b->pending_count];
         RT_TRY(rt_kd_divide(b, &cell, error));
@@ -163,11 +154,6 @@ static void move_lists(RtKdBuilder *from, RtKdBuilder *to) {
     from->id_capacity = 0;
 }
 
-static uint64_t bytes_of_lists(const RtKdBuilder *b) {
-    const uint64_t events = (uint64_t)b->event_capacity[0] + b->event_capacity[1] + b->event_capacity[2];
-    return b->id_capacity * sizeof(uint32_t) + events * sizeof(RtKdEvent);
-}
-
 static RtStatus defer(Subtree *s, RtKdCell cell, RtError *error) {
     Subtree *item;
     RtKdBuilder *b = &s->builder;
@@ -179,7 +165,8 @@ static RtStatus defer(Subtree *s, RtKdCell cell, RtError *error) {
         move_lists(b, &item->builder);
     else
         RT_TRY(copy_lists(b, &cell, &item->builder, error));
-    item->list_bytes = bytes_of_lists(&item->builder);
+    item->list_bytes = item->builder.id_capacity * sizeof(uint32_t);
+    for (int a = 0; a < 3; a++) item->list_bytes += item->builder.event_capacity[a] * sizeof(RtKdEvent);
     rt_kd_hold(item->memory.shared, item->list_bytes);
     cell.node = 0;
     item->builder.pending[item->builder.pending_count++] = cell;
@@ -299,12 +286,12 @@ static RtStatus join(Subtree *root, const Sharing *sums, RtKd *kd, int threads, 
 
 /* Builds each cell of at most `most` objects on one thread: node by node the tree that one thread builds. If
  * it may exceed the limit, *fits is false, and nothing is built. */
-static RtStatus build_on_several(RtKd *kd, const RtGeometry *g, uint64_t limit, uint32_t most, int threads,
+static RtStatus build_on_several(RtKd *kd, uint32_t objects, uint64_t limit, uint32_t most, int threads,
                                  bool *fits, RtError *error) {
-    Sharing sharing = {.most = most, .memory.limit = limit + (uint64_t)USUAL_LISTS * g->object_count};
+    Sharing sharing = {.most = most, .memory.limit = limit + (uint64_t)USUAL_LISTS * objects};
     Subtree *root;
-    RT_TRY(make_subtree(kd, limit, &sharing.memory, g->object_count, &root, error));
-    RtStatus status = make_root(&root->builder, g, threads, error);
+    RT_TRY(make_subtree(kd, limit, &sharing.memory, objects, &root, error));
+    RtStatus status = make_root(&root->builder, objects, threads, error);
     if (status == RT_OK)
         status = rt_parallel_tasks(&root, 1, sizeof root, threads, build_subtree, &sharing, error);
     *fits = status == RT_OK && !sharing.memory.exceeded && sharing.bytes <= limit;
@@ -317,17 +304,18 @@ static RtStatus build_on_several(RtKd *kd, const RtGeometry *g, uint64_t limit, 
 enum { SHARES = 8, SMALL = 1 << 12 };
 
 /* On several threads; if that may exceed the limit, again on one, which finds the max_depth that fits. */
-static RtStatus build_tree(RtKd *kd, const RtGeometry *g, uint64_t limit, int threads, RtError *error) {
-    uint32_t shares = SHARES * (uint32_t)rt_thread_count(threads), most = g->object_count / shares;
+static RtStatus build_tree(RtKd *kd, uint32_t objects, uint64_t limit, int threads, RtError *error) {
+    uint32_t shares = SHARES * (uint32_t)rt_thread_count(threads), most = objects / shares;
     bool fits = false;
-    if (g->object_count >= RT_KD_OBJECTS)
+    if (objects >= RT_KD_OBJECTS)
         return rt_fail(error, RT_BAD_INPUT, "a kd-tree holds fewer than %u objects; this scene has %u",
-                       RT_KD_OBJECTS, g->object_count);
-    if (shares > SHARES && most >= SMALL) RT_TRY(build_on_several(kd, g, limit, most, threads, &fits, error));
+                       RT_KD_OBJECTS, objects);
+    if (shares > SHARES && most >= SMALL)
+        RT_TRY(build_on_several(kd, objects, limit, most, threads, &fits, error));
     if (fits) return RT_OK;
     RtKdMemory memory = {.limit = limit};
     RtKdBuilder builder = {.kd = kd, .memory = &memory};
-    RtStatus status = build_on_one(&builder, g, error);
+    RtStatus status = build_on_one(&builder, objects, error);
     rt_kd_clear(&builder);
     return status;
 }
@@ -360,5 +348,5 @@ RtStatus rt_kd_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     if (g->object_count == 0) return RT_OK;
     kd->box = rt_box_widened(g->box, values[RT_KD_MARGIN].f);
     kd->served = rt_surface_rays(&g->box, &kd->box);
-    return build_tree(kd, g, what->limit, what->threads, error);
+    return build_tree(kd, g->object_count, what->limit, what->threads, error);
 }

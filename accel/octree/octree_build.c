@@ -251,7 +251,6 @@ static RtStatus walk_probe(Builder *probe, double weight, RtRandom *random, Esti
     return RT_OK;
 }
 
-/* Starts a probe at a node of the current level of `b`. */
 static RtStatus start_probe(Builder *probe, const Builder *b, uint32_t index, RtError *error) {
     const RtOctreeNode node = b->tree->nodes[index];
     probe->depth = b->depth;

@@ -27,7 +27,6 @@ static double area_with(const RtTree *tree, uint32_t cluster, const RtBox *box) 
     return rt_box_half_area(rt_box_union(tree->nodes[cluster].box, *box));
 }
 
-/* The best sibling for an object with box `box`. */
 static uint32_t find_sibling(const RtTree *tree, const RtBox *box) {
     Candidate stack[RT_TREE_MAX_DEPTH + 2];
     uint32_t stacked = 0, sibling = tree->root;

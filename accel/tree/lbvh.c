@@ -23,8 +23,6 @@ typedef struct Builder {
     const RtKeyed *row; /* in Morton order */
     RtBox *in_row;      /* boxes in the same order */
     uint32_t limit;     /* larger groups are shared among threads */
-    Group *groups;      /* [group_count] built by one thread each */
-    uint32_t group_count;
 } Builder;
 
 /* The number of row[0..count) that go left; count >= 2. */
@@ -62,24 +60,21 @@ static void build(const Builder *b, Group group) {
 
 /* A group is built by one thread if it has at most this fraction of a thread's share; CHUNK references at
  * least. */
-enum { SHARES = 8, CHUNK = 1 << 13, LEVELS = 3 * RT_MAX_MORTON_BITS + 32 };
+enum { SHARES = 8, CHUNK = 1 << 13 };
 
-/* Lists the groups that one thread builds. */
-static void list_groups(Builder *b, Group group) {
-    if (group.count <= b->limit) {
-        b->groups[b->group_count++] = group;
-        return;
-    }
-    Group sides[2];
-    get_sides(b, group, sides);
-    for (int s = 0; s < 2; s++) list_groups(b, sides[s]);
-}
-
-static void build_group(void *context, size_t item) {
+/* Halves a group while it is large; the right sides become tasks. */
+static RtStatus build_group(void *context, RtTasks *tasks, const void *task, RtError *error) {
     const Builder *b = context;
-    Group group = b->groups[item];
+    Group group = *(const Group *)task;
+    while (group.count > b->limit) {
+        Group sides[2];
+        get_sides(b, group, sides);
+        if (!rt_tasks_add(tasks, &sides[1])) return rt_fail_memory(error, "a subtree", sizeof(Group));
+        group = sides[0];
+    }
     for (uint32_t i = group.begin; i < group.begin + group.count; i++) b->in_row[i] = b->boxes[b->row[i].id];
     build(b, group);
+    return RT_OK;
 }
 
 static void unite_top(const Builder *b, Group group) {
@@ -90,26 +85,19 @@ static void unite_top(const Builder *b, Group group) {
     rt_tree_set_union(b->tree, group.node, sides[0].node, sides[1].node);
 }
 
-static RtStatus build_all(Builder *b, uint32_t count, int threads, RtError *error) {
-    Group all = {0, count, 0};
-    list_groups(b, all);
-    b->tree->used = b->tree->capacity;
-    RT_TRY(rt_parallel_each(b->group_count, threads, build_group, b, error));
-    unite_top(b, all);
-    return RT_OK;
-}
-
 RtStatus rt_tree_lbvh(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
                       RtError *error) {
     const uint32_t count = geometry->object_count,
                    share = count / SHARES / (uint32_t)rt_thread_count(threads);
+    const Group all = {0, count, 0};
     RT_ARENA(arena);
     Builder builder = {.tree = tree, .boxes = geometry->boxes, .limit = share > CHUNK ? share : CHUNK};
     RT_TRY(rt_tree_init(tree, count, error));
-    RT_TRY(rt_order_morton(geometry->boxes, count, options->bits, threads, &arena, &builder.row, error));
+    RT_TRY(rt_tree_order(geometry, options->bits, 0, threads, &arena, &builder.row, error));
     builder.in_row = rt_arena_alloc_unset(&arena, count, sizeof(RtBox));
-    /* At most so many groups have two sides at each level, of 63 bits and then of halvings. */
-    builder.groups = rt_arena_alloc(&arena, 2 * (size_t)LEVELS * (count / builder.limit + 1), sizeof(Group));
     RT_TRY(rt_arena_check(&arena, "a tree by Morton codes", error));
-    return build_all(&builder, count, threads, error);
+    tree->used = tree->capacity;
+    RT_TRY(rt_parallel_tasks(&all, 1, sizeof all, threads, build_group, &builder, error));
+    unite_top(&builder, all);
+    return RT_OK;
 }

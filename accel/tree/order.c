@@ -26,7 +26,6 @@ typedef struct Sorter {
     RtBox *centers_of; /* [chunks] */
 } Sorter;
 
-/* The range of a chunk. */
 static uint32_t chunk_begin(const Sorter *s, size_t chunk) {
     return (uint32_t)chunk * s->chunk_size;
 }
@@ -123,31 +122,23 @@ static void make_keys(void *context, size_t chunk) {
     }
 }
 
-static RtStatus make_order(Sorter *s, int threads, RtArena *memory, const RtKeyed **order, RtError *error) {
-    const uint32_t share = s->count / (uint32_t)rt_thread_count(threads) + 1;
-    s->chunk_size = share > CHUNK ? share : CHUNK;
-    const size_t chunks = s->count / s->chunk_size + 1;
-    s->items = rt_arena_alloc_unset(memory, s->count, sizeof(RtKeyed));
-    s->out = rt_arena_alloc_unset(memory, s->count, sizeof(RtKeyed));
-    s->offsets = rt_arena_alloc(memory, chunks, sizeof(Offsets));
-    s->centers_of = rt_arena_alloc(memory, chunks, sizeof(RtBox));
-    RT_TRY(rt_arena_check(memory, "an order of objects", error));
-    RT_TRY(rt_parallel_each(chunks, threads, find_centers, s, error));
-    s->centers = RT_EMPTY_BOX;
-    for (size_t c = 0; c < chunks; c++) s->centers = rt_box_union(s->centers, s->centers_of[c]);
-    RT_TRY(rt_parallel_each(chunks, threads, make_keys, s, error));
-    RT_TRY(sort(s, s->bits > 0 ? 3 * s->bits : 32, chunks, threads, error));
-    rt_arena_free(memory, s->out);
-    *order = s->items;
-    return RT_OK;
-}
-
-RtStatus rt_order_morton(const RtBox *boxes, uint32_t count, uint32_t bits, int threads, RtArena *memory,
-                         const RtKeyed **order, RtError *error) {
-    return make_order(&(Sorter){.boxes = boxes, .count = count, .bits = bits}, threads, memory, order, error);
-}
-
-RtStatus rt_order_axis(const RtBox *boxes, uint32_t count, int axis, int threads, RtArena *memory,
+RtStatus rt_tree_order(const RtGeometry *geometry, uint32_t bits, int axis, int threads, RtArena *memory,
                        const RtKeyed **order, RtError *error) {
-    return make_order(&(Sorter){.boxes = boxes, .count = count, .axis = axis}, threads, memory, order, error);
+    const uint32_t count = geometry->object_count, share = count / (uint32_t)rt_thread_count(threads) + 1;
+    Sorter s = {
+        .boxes = geometry->boxes, .centers = RT_EMPTY_BOX, .bits = bits, .axis = axis, .count = count};
+    s.chunk_size = share > CHUNK ? share : CHUNK;
+    const size_t chunks = count / s.chunk_size + 1;
+    s.items = rt_arena_alloc_unset(memory, count, sizeof(RtKeyed));
+    s.out = rt_arena_alloc_unset(memory, count, sizeof(RtKeyed));
+    s.offsets = rt_arena_alloc(memory, chunks, sizeof(Offsets));
+    s.centers_of = rt_arena_alloc(memory, chunks, sizeof(RtBox));
+    RT_TRY(rt_arena_check(memory, "an order of objects", error));
+    RT_TRY(rt_parallel_each(chunks, threads, find_centers, &s, error));
+    for (size_t c = 0; c < chunks; c++) s.centers = rt_box_union(s.centers, s.centers_of[c]);
+    RT_TRY(rt_parallel_each(chunks, threads, make_keys, &s, error));
+    RT_TRY(sort(&s, bits > 0 ? 3 * bits : 32, chunks, threads, error));
+    rt_arena_free(memory, s.out);
+    *order = s.items;
+    return RT_OK;
 }

@@ -184,7 +184,7 @@ RtStatus rt_tree_ploc(RtTree *tree, const RtGeometry *geometry, const RtTreeOpti
                 .count = count,
                 .radius = options->radius,
                 .boxes = geometry->boxes};
-    RT_TRY(rt_order_morton(geometry->boxes, count, options->bits, threads, &arena, &r.order, error));
+    RT_TRY(rt_tree_order(geometry, options->bits, 0, threads, &arena, &r.order, error));
     RT_TRY(rt_parallel_each((count + CHUNK - 1) / CHUNK, threads, set_leaves, &r, error));
     tree->used = count;
     for (uint32_t round = 0; r.count > 1; round++) RT_TRY(run_round(&r, round, threads, error));

@@ -21,7 +21,6 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -190,7 +189,6 @@ static void replace_child(Optimizer *o, uint32_t parent, uint32_t from, uint32_t
     child[child[0] == from ? 0 : 1] = to;
 }
 
-/* Refits the boxes of `node` and its ancestors. */
 static void refit(Optimizer *o, uint32_t node) {
     for (; node != NONE; node = o->parent[node]) {
         RtBox before = o->tree->nodes[node].box;

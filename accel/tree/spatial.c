@@ -29,8 +29,8 @@
 #include "core/base/parallel.h"
 #include "core/shape/overlap.h"
 
-#include <assert.h>
 #include <stdatomic.h>
+#include <stdio.h>
 
 /* The two sides of a split, and its cost. */
 typedef struct Sides {
@@ -471,16 +471,13 @@ static RtStatus check_limit(double budget, uint64_t limit, uint32_t count, RtErr
     double most = (double)limit, bytes = count * budget * REF_BYTES;
     if (bytes <= most) return RT_OK;
     double fits = floor(most / REF_BYTES / count * 10) / 10;
-    if (fits < 1)
-        return rt_fail(error, RT_BAD_INPUT,
-                       "spatial splits of %u objects would take at least %.3g GiB, more than %.3g GiB: "
-                       "choose another build",
-                       count, (double)count * REF_BYTES / 0x1p30, most / 0x1p30);
+    char remedy[64] = "choose another build";
+    if (fits >= 1) snprintf(remedy, sizeof remedy, "budget=%g would fit", fits);
     return rt_fail(
         error, RT_BAD_INPUT,
-        "spatial splits with up to %g references per object may take %.3g GiB, more than %.3g GiB: "
-        "budget=%g would fit",
-        budget, bytes / 0x1p30, most / 0x1p30, fits);
+        "spatial splits with up to %g references for each of %u objects may take %.3g GiB, more than "
+        "%.3g GiB: %s",
+        budget, count, bytes / 0x1p30, most / 0x1p30, remedy);
 }
 
 RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
@@ -505,6 +502,9 @@ RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtTreeO
     for (uint32_t i = 0; i < count; i++) b.refs[i] = (RtTreeRef){geometry->boxes[i], i};
     b.runs[0].group = (Group){.count = count, .spare = most - count};
     RT_TRY(rt_parallel_tasks(&root, 1, sizeof root, count > b.limit ? threads : 1, build_run, &b, error));
-    tree->used = tree->capacity = close_gaps(&b, &b.runs[0], 0);
+    tree->used = close_gaps(&b, &b.runs[0], 0);
+    rt_arena_free(&arena, b.refs); /* before there are two trees */
+    rt_trim(&tree->nodes, tree->used, &tree->capacity, sizeof(RtTreeNode));
+    tree->capacity = tree->used;
     return RT_OK;
 }

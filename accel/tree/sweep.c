@@ -90,12 +90,11 @@ static uint32_t build(const Sweep *s, uint32_t begin, uint32_t count, int depth)
     return node;
 }
 
-/* The references sorted along an axis. */
 static RtStatus make_row(Sweep *s, const RtGeometry *geometry, int axis, RtArena *memory, RtError *error) {
     const uint32_t count = geometry->object_count;
     RT_ARENA(arena);
     const RtKeyed *order;
-    RT_TRY(rt_order_axis(geometry->boxes, count, axis, 1, &arena, &order, error));
+    RT_TRY(rt_tree_order(geometry, 0, axis, 1, &arena, &order, error));
     RtTreeRef *row = s->rows[axis] = rt_arena_alloc(memory, count, sizeof(RtTreeRef));
     RT_TRY(rt_arena_check(memory, "the rows of a sweep", error));
     for (uint32_t i = 0; i < count; i++) row[i] = (RtTreeRef){geometry->boxes[order[i].id], order[i].id};

@@ -69,7 +69,6 @@ static void bins_init(Bins *self, uint32_t count, RtBox4 centers) {
     self->lo[3] = self->scale[3] = 0;
 }
 
-/* Adds the references of `other`, which has the same bins. */
 static void bins_merge(Bins *self, const Bins *other) {
     for (int axis = 0; axis < 3; axis++) {
         for (uint32_t i = 0; i < self->size[axis]; i++)
@@ -221,7 +220,6 @@ static Split small_group_split(const SmallGroup *self, uint32_t begin, uint32_t 
     return best;
 }
 
-/* Moves the left side to the front of all three orders. */
 static void small_group_partition(SmallGroup *self, uint32_t begin, uint32_t count, const Split *split) {
     uint64_t is_left = 0;
     if (count == 2) { /* each side is one reference: the first order suffices */
@@ -411,7 +409,6 @@ typedef struct Chunk {
     Bins bins;
 } Chunk;
 
-/* A group of the top, of which some level is being split. */
 struct OpenGroup {
     RtRefGroup group;
     Split split;
@@ -433,7 +430,6 @@ typedef struct Top {
     _Atomic uint32_t node_count;
 } Top;
 
-/* Divides the references of all open groups into chunks. */
 static void make_chunks(Top *top) {
     Chunk *next = top->chunks;
     for (OpenGroup *g = top->groups; g < top->groups + top->open; g++) {

@@ -200,7 +200,6 @@ static void reduce_top(Job *job, uint32_t index, uint32_t depth, void *value) {
                             value);
 }
 
-/* Reduces the parts; *too_deep: some leaf is below RT_TREE_MAX_DEPTH. */
 static RtStatus reduce_parts(Job *job, int threads, bool *too_deep, RtError *error) {
     job->parts->count = 0;
     list_parts(job, job->tree->root, 0);

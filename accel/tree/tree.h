@@ -78,13 +78,9 @@ static inline uint32_t rt_tree_leaf_count(const RtTree *tree) {
     return tree->boxes ? tree->used + 1 : (tree->used + 1) / 2;
 }
 
-/* Allocates a node, which the caller fills. */
+/* Allocates a node; makes it a leaf; makes it the parent of a and b. */
 uint32_t rt_tree_take(RtTree *tree);
-
-/* Makes a node a leaf. */
 void rt_tree_set_leaf(RtTree *tree, uint32_t node, RtBox box, uint32_t object);
-
-/* Makes a node the parent of a and b. */
 void rt_tree_set_union(RtTree *tree, uint32_t node, uint32_t a, uint32_t b);
 
 /* Adds a parent of nodes a and b, makes it the root, and returns it. */
@@ -171,15 +167,13 @@ typedef struct RtKeyed {
     uint32_t id;
 } RtKeyed;
 
-/* Allocates in `memory`, and sets *order to, boxes[0..count) in ascending order of keys, equal ones by id. It
- * does not depend on the number of `threads` (0 = all processors). Keys of an axis increase with the centre.
- * Morton codes: the box of all centres is divided into 2^bits cells along each axis, bits 1..
- * RT_MAX_MORTON_BITS; the key interleaves the coordinates of the centre's cell, x in the lowest bit, then y,
- * then z. */
-RtStatus rt_order_axis(const RtBox *boxes, uint32_t count, int axis, int threads, RtArena *memory,
+/* Allocates in `memory`, and sets *order to, all objects in ascending order of keys, equal ones by id. It
+ * does not depend on the number of `threads` (0 = all processors). If `bits` is 0, the key increases with the
+ * centre of the box along `axis`. Otherwise, 1..RT_MAX_MORTON_BITS, it is a Morton code: the box of all
+ * centres is divided into 2^bits cells along each axis; the key interleaves the coordinates of the centre's
+ * cell, x in the lowest bit, then y, then z. */
+RtStatus rt_tree_order(const RtGeometry *geometry, uint32_t bits, int axis, int threads, RtArena *memory,
                        const RtKeyed **order, RtError *error);
-RtStatus rt_order_morton(const RtBox *boxes, uint32_t count, uint32_t bits, int threads, RtArena *memory,
-                         const RtKeyed **order, RtError *error);
 
 /* ---- reductions ---- */
 

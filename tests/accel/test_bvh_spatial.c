@@ -169,16 +169,6 @@ RT_TEST(hostile_rays_hit_like_brute) {
 
 /* ---- limits ---- */
 
-RT_TEST(degenerate_scenes_are_built) {
-    const char *specs[] = {"random:n=0", "random:n=1,shape=triangle", "random:n=300,distribution=coincident",
-                           "random:n=300,distribution=plane,shape=mixed", "random:n=300,distribution=line"};
-    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
-        OWNED_SCENE scene = open_scene(specs[i]);
-        if (i > 0) assert_like_brute(&scene, "bvh:build=spatial,alpha=0,budget=4", i);
-        rt_accel_destroy(open_valid(&scene, "bvh:build=spatial"));
-    }
-}
-
 /* Enough objects for all threads to build the top, and for groups of more than SMALL references. */
 RT_TEST(the_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
     const RtTreeOptions options = {

@@ -114,19 +114,6 @@ RT_TEST(a_round_never_costs_more_and_a_poor_tree_gets_good) {
     }
 }
 
-RT_TEST(the_tree_does_not_depend_on_threads) {
-    enum { COUNT = 5000 };
-    OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, 9);
-    OWNED_TREE first = make_tree(boxes, COUNT, MEDIANS);
-    assert_ok(rt_tree_reinsert(&first, 3, 1, 1, error));
-    for (int threads = 2; threads <= 3; threads++) {
-        OWNED_TREE tree = make_tree(boxes, COUNT, MEDIANS);
-        assert_ok(rt_tree_reinsert(&tree, 3, 1, threads, error));
-        assert_int_equal(tree.root, first.root);
-        assert_memory_equal(tree.nodes, first.nodes, tree.used * sizeof(RtTreeNode));
-    }
-}
-
 /* ---- against all moves there are ---- */
 
 static uint32_t parent_of(const RtTree *tree, uint32_t node) {

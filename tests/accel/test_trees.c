@@ -13,7 +13,7 @@ static const RtTreeOptions methods[] = {
     {.method = RT_TREE_BINNED, .spatial.bins = 16},
     {.method = RT_TREE_SWEEP},
     {.method = RT_TREE_LBVH, .bits = 21},
-    {.method = RT_TREE_BINNED, .spatial.bins = 32},
+    {.method = RT_TREE_BINNED, .spatial.bins = 32, .reinsertion = 1, .batch = 0.5},
     {.method = RT_TREE_BINNED, .spatial.bins = 64},
 };
 enum { AGGLOMERATIVE, PLOC, INSERTION, MEDIANS, BINNED, SWEEP, LBVH, METHOD_COUNT, VARIANT_COUNT = 9 };
@@ -32,7 +32,8 @@ RT_TEST(an_axis_is_sorted_by_centres_and_ids) {
         }
         RT_ARENA(arena);
         const RtKeyed *order;
-        assert_ok(rt_order_axis(boxes, COUNT, axis, 1, &arena, &order, error));
+        assert_ok(rt_tree_order(&(RtGeometry){.boxes = boxes, .object_count = COUNT}, 0, axis, 1, &arena,
+                                &order, error));
         for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(order[i].id, expected[i]);
     }
 }
@@ -48,10 +49,11 @@ static void make_cells(RtBox *boxes) {
 RT_TEST(morton_codes_interleave_the_cells_of_centres) {
     RtBox boxes[64];
     make_cells(boxes);
+    const RtGeometry geometry = {.boxes = boxes, .object_count = 64};
     RT_ARENA(arena);
     const RtKeyed *order, *coarse; /* eight a cell, by id */
-    assert_ok(rt_order_morton(boxes, 64, 2, 1, &arena, &order, error));
-    assert_ok(rt_order_morton(boxes, 64, 1, 1, &arena, &coarse, error));
+    assert_ok(rt_tree_order(&geometry, 2, 0, 1, &arena, &order, error));
+    assert_ok(rt_tree_order(&geometry, 1, 0, 1, &arena, &coarse, error));
     for (uint32_t i = 0; i < 64; i++) {
         uint32_t id = order[i].id, code = 0;
         for (uint32_t bit = 0; bit < 6; bit++) code |= (id >> (bit % 3 * 2 + bit / 3) & 1) << bit;
@@ -72,10 +74,10 @@ RT_TEST(centres_that_are_equal_along_an_axis_are_in_its_first_cell) {
             boxes[i].lo.at[axis] = 5;
             boxes[i].hi.at[axis] = 6;
         }
+        const RtGeometry geometry = {.boxes = boxes, .object_count = 64};
         RT_ARENA(arena);
-        const RtKeyed *order, *coarse; /* eight a cell, by id */
-        assert_ok(rt_order_morton(boxes, 64, 2, 1, &arena, &order, error));
-        assert_ok(rt_order_morton(boxes, 64, 1, 1, &arena, &coarse, error));
+        const RtKeyed *order;
+        assert_ok(rt_tree_order(&geometry, 2, 0, 1, &arena, &order, error));
         for (uint32_t i = 0; i < 64; i++)
             assert_int_equal(order[i].key & UINT64_C(0x1249249249249249) << axis, 0);
     }
@@ -323,15 +325,6 @@ RT_TEST(a_chain_of_growing_distances_stays_within_the_depth_limit) {
         assert_true(description.depth <= RT_TREE_MAX_DEPTH);
         if (b == 1) assert_int_equal(description.depth, 43); /* 34, and 350 spheres that are halved */
     }
-}
-
-RT_TEST(what_is_shallow_enough_is_left_as_it_is) {
-    OWNED_MEMORY RtBox *boxes = make_boxes(500, 1);
-    OWNED_TREE tree = build_tree(boxes, 500, methods[AGGLOMERATIVE], 1);
-    RtTreeNode before[999];
-    memcpy(before, tree.nodes, sizeof before);
-    assert_ok(rt_tree_limit_depth(&tree, error));
-    assert_memory_equal(before, tree.nodes, sizeof before);
 }
 
 /* ---- threads and memory ---- */
