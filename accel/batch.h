@@ -138,7 +138,7 @@ RT_KERNEL void rt_batch_begin(RtBatch *batch, const RtGeometry *g, const RtScrat
             test_all(batch, geometry, any, counted);                                                         \
             for (uint32_t i = 0; i < n; i++) {                                                               \
                 const RtActiveRay *a = &batch->rays[i];                                                      \
-                rt_put_answer(a->best, first + i, any, hits, occluders, counted ? a->tally : NULL);          \
+                rt_put_answer(&a->best, first + i, any, hits, occluders, counted ? a->tally : NULL);         \
             }                                                                                                \
         }                                                                                                    \
     }                                                                                                        \

@@ -65,13 +65,13 @@ RT_KERNEL void rt_count_answer(bool hit, RtTally *tally) {
 }
 
 /* Writes the answer of ray i of a stream, and counts it. */
-RT_KERNEL void rt_put_answer(RtHit best, size_t i, bool any, RtHit *hits, uint32_t *occluders,
+RT_KERNEL void rt_put_answer(const RtHit *best, size_t i, bool any, RtHit *hits, uint32_t *occluders,
                              RtTally *tally) {
-    rt_count_answer(best.object != RT_NO_OBJECT, tally);
+    rt_count_answer(best->object != RT_NO_OBJECT, tally);
     if (any)
-        occluders[i] = best.object;
+        occluders[i] = best->object;
     else
-        hits[i] = best;
+        hits[i] = *best;
 }
 
 /* The largest t at which a hit is still of interest: the best t so far, or tmax if there is none. */
@@ -120,7 +120,7 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
             rt_hit_ray(&prepared, &accel->scene->geometry, &rays[i], scratch->crossings);                    \
             RtHit best = RT_MISS;                                                                            \
             search((const Type *)accel, scratch->own, &prepared, any, &best, tally);                         \
-            rt_put_answer(best, i, any, hits, occluders, tally);                                             \
+            rt_put_answer(&best, i, any, hits, occluders, tally);                                            \
         }                                                                                                    \
     }                                                                                                        \
     RT_DEFINE_STREAM_KERNELS(search_each)

@@ -400,7 +400,7 @@ RT_KERNEL void answer_user(const RtEmbree *self, const RtScratch *scratch, const
         Trace trace = begin_trace(self, scratch, coherent, tallies != NULL);
         trace_batch(self, batch, &trace.context, coherent, n, any, lanes, stream);
         for (size_t i = 0; i < n; i++)
-            rt_put_answer(batch->searches[i].best, begin + i, any, hits, occluders, NULL);
+            rt_put_answer(&batch->searches[i].best, begin + i, any, hits, occluders, NULL);
     }
 }
 

@@ -390,7 +390,7 @@ RT_KERNEL void flush_pending(RayRun *run, RtTally *tallies) {
     RT_COUNT(tally, object_hits, (uint32_t)__builtin_popcount(hits));
     if (RT_OBSERVED(tallies)) observe_pending(rt_item_geometry(run->buffer), p, t);
     for (uint32_t k = 0; k < p->count; k++)
-        rt_put_answer((RtHit){t[k], p->id[k]}, p->place[k], false, run->hits, NULL, tally);
+        rt_put_answer(&(RtHit){t[k], p->id[k]}, p->place[k], false, run->hits, NULL, tally);
     p->count = 0;
 }
 
@@ -438,7 +438,7 @@ RT_KERNEL void answer_run(const RtAccel *accel, const RtScratch *scratch, const 
         RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "sample", .index = ray->source);
         __builtin_prefetch(ray + PREFETCH);
         if (id == RT_NO_OBJECT) {
-            rt_put_answer(RT_MISS, i, false, hits, NULL, tally);
+            rt_put_answer(&RT_MISS, i, false, hits, NULL, tally);
         } else if (mixed ? is_triangle(g, id, &triangle) : true) {
             __builtin_prefetch(&g->triangles[triangle]);
             __builtin_prefetch(&g->triangles[triangle].v[2].z);
@@ -449,7 +449,7 @@ RT_KERNEL void answer_run(const RtAccel *accel, const RtScratch *scratch, const 
             RtHit hit = RT_MISS;
             rt_hit_ray(&prepared, g, ray, scratch->crossings);
             rt_test_object(g, id, &prepared, false, &hit, tally);
-            rt_put_answer(hit, i, false, hits, NULL, tally);
+            rt_put_answer(&hit, i, false, hits, NULL, tally);
         }
     }
     if (run.pending.count > 0) flush_pending(&run, tallies);

@@ -16,7 +16,7 @@
 
 /* Writes the answer of a ray. */
 RT_KERNEL void finish_ray(const Query *q, const RayState *f, bool any, bool counted) {
-    rt_put_answer(f->best, f->index, any, q->hits, q->occluders, counted ? f->tally : NULL);
+    rt_put_answer(&f->best, f->index, any, q->hits, q->occluders, counted ? f->tally : NULL);
 }
 
 /* ---- one ray after the other ---- */
@@ -252,7 +252,7 @@ RT_KERNEL void trace_many(const Query *q, bool any, bool counted) {
 RT_KERNEL void finish_packet(Packet *p, const Query *q, bool any) {
     test_pairs(p, q->tree, 1, any);
     for (uint32_t i = 0; i < p->count; i++)
-        rt_put_answer(p->best[i], p->index[i], any, q->hits, q->occluders, NULL);
+        rt_put_answer(&p->best[i], p->index[i], any, q->hits, q->occluders, NULL);
 }
 
 /* Traces the next rays of a query, about `count`. */

@@ -6,7 +6,6 @@
 #include "equivalence_testing.h"
 
 #include "accel/plugin.h"
-#include "accel/remote.h"
 #include "core/base/clock.h"
 #include "measure/measure.h"
 #include "render/path.h"
