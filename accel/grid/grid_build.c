@@ -274,6 +274,6 @@ RtStatus rt_grid_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     grid->slack = values[RT_GRID_SLACK].f;
     if (g->object_count == 0) return RT_OK;
     grid->box = choose_box(g, values[RT_GRID_FLAT].f, values[RT_GRID_MARGIN].f);
-    grid->served = rt_surface_rays(&g->box, &grid->box);
+    grid->served = rt_clipped_rays(&g->box, &grid->box);
     return make_levels(&builder);
 }

@@ -10,9 +10,9 @@
  * Invariant. Each point of an object's surface is in the box of one of its references: when a plane cuts a
  * box both parts contain the plane, and rt_object_part shrinks a part only where there is no surface. So
  * every point s of the surface is in the box of some leaf and of all its ancestors. At the t of a hit the ray
- * is in every box that contains the point s near to it (accel/surface.h), so it meets all of these: it enters
- * each at or before t and leaves it at or after t. The rest of the proof is in core/base/ray.h. The parts of
- * a CSG tree together contain its whole box.
+ * is in every box that contains the point s near to it (accel/clipping.h), so it meets all of these: it
+ * enters each at or before t and leaves it at or after t. The rest of the proof is in core/base/ray.h. The
+ * parts of a CSG tree together contain its whole box.
  *
  * A budget limits the number of references. A node has a share of the spare references, and divides it among
  * its children by the sum of the areas of their references, which is the expected number of tests: cuts gain
@@ -21,7 +21,7 @@
  * is lost in larger ones. So the references of a node lie in one run with its spare slots behind them, its
  * nodes have as many slots, and subtrees are built in parallel. Finally the gaps between nodes are closed:
  * the tree does not depend on the number of threads. */
-#include "accel/surface.h"
+#include "accel/clipping.h"
 #include "accel/tree/hierarchy.h"
 #include "accel/tree/spatial_bins.h"
 #include "accel/tree/topdown.h"
@@ -321,7 +321,7 @@ RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtSpati
                          RtError *error) {
     uint32_t count = geometry->object_count;
     RT_TRY(check_limit(how, count, error));
-    bool is_tiny = rt_box_longest_side(geometry->box) < RT_SURFACE_LEAST_SIDE;
+    bool is_tiny = rt_box_longest_side(geometry->box) < RT_CLIPPED_LEAST_SIDE;
     uint32_t most = is_tiny ? count : (uint32_t)(count * how->budget);
     RT_TRY(rt_tree_init(tree, most, error));
     Builder b = {.tree = tree,

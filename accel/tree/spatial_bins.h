@@ -40,7 +40,7 @@ typedef struct RtSpatialGroup {
 RtSpatialSplit rt_spatial_bins_split(const RtSpatialGroup *group, int count);
 
 /* Clips a reference to `lo`..`hi` along `axis`: *part contains all of its surface there, or all of a CSG
- * tree's box (accel/surface.h). False if there is none. */
+ * tree's box (accel/clipping.h). False if there is none. */
 bool rt_ref_part(const RtSpatialGroup *group, const RtTreeRef *ref, int axis, float lo, float hi,
                  RtBox *part);
 
