@@ -2,7 +2,7 @@
 /* Stacks of accelerators, overlays over a base: building, describing and querying them; and what accelerators
  * share: the test of all objects, and sums over boxes. */
 #include "accel/kernel.h"
-#include "accel/remote.h"
+#include "accel/plugin.h"
 #include "core/base/clock.h"
 #include "core/base/parallel.h"
 

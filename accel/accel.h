@@ -175,7 +175,7 @@ struct RtAccelOps {
     size_t param_count;
     uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays. Which
                        rays a plugin's answers is unknown: RT_ALL_RAY_KINDS */
-    bool remote;    /* a plugin's, which is built in a process of its own (accel/remote.h) */
+    bool remote;    /* a plugin's, which is built in a process of its own (accel/plugin.h) */
     /* Optional: a spec, "light:cells=100", that is verified in addition to the default. For accelerators that
      * do not use their own structure over few objects or rays by default. */
     const char *trial;
@@ -317,7 +317,7 @@ RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHA
 
 /* Builds the accelerator of a spec over `scene`, on `threads` threads (0 = all processors), which do not
  * change the structure; on one, which needs least memory, if more exceed a limit of memory. rt_accel_build
- * builds a remote spec in a process of its own (accel/remote.h); rt_accel_build_here builds any spec in this
+ * builds a remote spec in a process of its own (accel/plugin.h); rt_accel_build_here builds any spec in this
  * process. rt_accel_open_on takes the spec as text; rt_accel_open also uses all processors. Destroy with
  * rt_accel_destroy. */
 RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,

@@ -138,12 +138,7 @@ RT_KERNEL void rt_batch_begin(RtBatch *batch, const RtGeometry *g, const RtScrat
             test_all(batch, geometry, any, counted);                                                         \
             for (uint32_t i = 0; i < n; i++) {                                                               \
                 const RtActiveRay *a = &batch->rays[i];                                                      \
-                RT_COUNT(counted ? a->tally : NULL, rays, 1);                                                \
-                RT_COUNT(counted ? a->tally : NULL, hits, a->best.object != RT_NO_OBJECT);                   \
-                if (any)                                                                                     \
-                    occluders[first + i] = a->best.object;                                                   \
-                else                                                                                         \
-                    hits[first + i] = a->best;                                                               \
+                rt_put_answer(&a->best, first + i, any, hits, occluders, counted ? a->tally : NULL);         \
             }                                                                                                \
         }                                                                                                    \
     }                                                                                                        \

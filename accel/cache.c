@@ -31,24 +31,42 @@ RT_KERNEL uint32_t find_occluder(const RtAccel *self, const RtScratch *scratch, 
                                  RtTally *tallies) {
     const RtScene *scene = self->scene;
     RtTally *tally = tallies ? &tallies[RT_RAY_SHADOW] : NULL;
-    if (ray->source >= scene->light_count) return rt_pass_on_occluded(self, scratch, ray, tallies);
-
-    uint32_t *last = (uint32_t *)scratch->own + ray->source;
+    uint32_t none = RT_NO_OBJECT, occluder;
+    uint32_t *last = ray->source < scene->light_count ? (uint32_t *)scratch->own + ray->source : &none;
     if (*last != RT_NO_OBJECT) {
         RtPreparedRay prepared;
         rt_hit_ray(&prepared, &scene->geometry, ray, scratch->crossings);
         RtHit hit = RT_MISS;
         RT_COUNT(tally, steps, 1);
         RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "object", .index = *last);
-        if (rt_test_object(&scene->geometry, *last, &prepared, true, &hit, tally))
-            return rt_answer_occluded(*last, tally);
+        if (rt_test_object(&scene->geometry, *last, &prepared, true, &hit, tally)) {
+            rt_count_answer(true, tally);
+            return *last;
+        }
     }
-    uint32_t occluder = rt_pass_on_occluded(self, scratch, ray, tallies);
+    RT_COUNT(tally, passed_on, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_PASSED_ON, .what = self->ops->name);
+    rt_hand_down_occluded(self, scratch, ray, 1, &occluder, tallies);
     if (occluder < scene->geometry.object_count) *last = occluder;
     return occluder;
 }
 
-RT_DEFINE_SHADOW_KERNELS(find_occluder)
+/* Runs of rays of other kinds are handed down. */
+RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                            uint32_t *occluders, RtTally *tallies) {
+    for (size_t i = 0, next; i < count; i = next) {
+        next = i + 1;
+        if (rays[i].kind == RT_RAY_SHADOW) {
+            occluders[i] = find_occluder(accel, scratch, &rays[i], tallies);
+            continue;
+        }
+        while (next < count && rays[next].kind != RT_RAY_SHADOW) next++;
+        rt_hand_down_occluded(accel, scratch, rays + i, next - i, occluders + i, tallies);
+    }
+}
+
+RT_DEFINE_BOTH(occluded, uint32_t, occluded_all)
+RT_DEFINE_HANDED_DOWN(nearest, RtHit)
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     (void)accel;

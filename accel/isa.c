@@ -3,8 +3,6 @@
  * for one. */
 #include "accel/isa.h"
 
-typedef enum Choice { BEST, PORTABLE, AVX2, AVX512 } Choice; /* of RT_ISA_PARAM */
-
 /* What this processor has. */
 static RtIsa machine_isa(void) {
 #if defined(__x86_64__)
@@ -35,14 +33,9 @@ bool rt_isa_runs(RtIsa isa) {
     return isa <= machine_isa();
 }
 
+/* The choices of RT_ISA_PARAM are "best" and then those of RtIsa. */
 RtIsa rt_isa_asked(RtValue value) {
-    switch ((Choice)value.choice) {
-    case BEST: break;
-    case PORTABLE: return RT_ISA_PORTABLE;
-    case AVX2: return RT_ISA_AVX2;
-    case AVX512: return RT_ISA_AVX512;
-    }
-    return rt_isa_best();
+    return value.choice == 0 ? rt_isa_best() : (RtIsa)(value.choice - 1);
 }
 
 const char *rt_isa_name(RtIsa isa) {

@@ -58,6 +58,22 @@ RT_KERNEL bool rt_test_all(const RtGeometry *geometry, const RtPreparedRay *ray,
                  : rt_test_all_timed(geometry, ray, any, best);
 }
 
+/* Counts a ray that is answered. */
+RT_KERNEL void rt_count_answer(bool hit, RtTally *tally) {
+    RT_COUNT(tally, rays, 1);
+    RT_COUNT(tally, hits, hit);
+}
+
+/* Writes the answer of ray i of a stream, and counts it. */
+RT_KERNEL void rt_put_answer(const RtHit *best, size_t i, bool any, RtHit *hits, uint32_t *occluders,
+                             RtTally *tally) {
+    rt_count_answer(best->object != RT_NO_OBJECT, tally);
+    if (any)
+        occluders[i] = best->object;
+    else
+        hits[i] = *best;
+}
+
 /* The largest t at which a hit is still of interest: the best t so far, or tmax if there is none. */
 RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
     return rt_minf(best->t, ray->tmax);
@@ -104,12 +120,7 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
             rt_hit_ray(&prepared, &accel->scene->geometry, &rays[i], scratch->crossings);                    \
             RtHit best = RT_MISS;                                                                            \
             search((const Type *)accel, scratch->own, &prepared, any, &best, tally);                         \
-            RT_COUNT(tally, rays, 1);                                                                        \
-            RT_COUNT(tally, hits, best.object != RT_NO_OBJECT);                                              \
-            if (any)                                                                                         \
-                occluders[i] = best.object;                                                                  \
-            else                                                                                             \
-                hits[i] = best;                                                                              \
+            rt_put_answer(&best, i, any, hits, occluders, tally);                                            \
         }                                                                                                    \
     }                                                                                                        \
     RT_DEFINE_STREAM_KERNELS(search_each)
@@ -133,29 +144,6 @@ RT_KERNEL void rt_hand_down_occluded(const RtAccel *accel, const RtScratch *scra
     rt_trace_stream(accel->below, scratch + 1, rays, count, NULL, occluders, tallies);
 }
 
-/* Passes on one shadow ray that the overlay cannot decide; returns its occluder. */
-RT_KERNEL uint32_t rt_pass_on_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *ray,
-                                       RtTally *tallies) {
-    uint32_t occluder;
-    if (tallies) tallies[ray->kind].passed_on++;
-    RT_OBSERVE(tallies, .kind = RT_TRACED_PASSED_ON, .what = accel->ops->name);
-    rt_hand_down_occluded(accel, scratch, ray, 1, &occluder, tallies);
-    return occluder;
-}
-
-/* Counts a ray that the overlay itself has answered; returns the answer. */
-RT_KERNEL RtHit rt_answer_nearest(RtHit hit, RtTally *tally) {
-    RT_COUNT(tally, rays, 1);
-    RT_COUNT(tally, hits, hit.object != RT_NO_OBJECT);
-    return hit;
-}
-
-RT_KERNEL uint32_t rt_answer_occluded(uint32_t occluder, RtTally *tally) {
-    RT_COUNT(tally, rays, 1);
-    RT_COUNT(tally, hits, occluder != RT_NO_OBJECT);
-    return occluder;
-}
-
 /* Expands the function `all`, which answers a query for a stream, into the timed and the counted kernel. */
 #define RT_DEFINE_BOTH(query, Answer, all)                                                                   \
     static void query##_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,             \
@@ -169,27 +157,5 @@ RT_KERNEL uint32_t rt_answer_occluded(uint32_t occluder, RtTally *tally) {
 
 /* The two kernels of a query that an overlay hands down for every ray. */
 #define RT_DEFINE_HANDED_DOWN(query, Answer) RT_DEFINE_BOTH(query, Answer, rt_hand_down_##query)
-
-/* The kernels of an overlay that answers shadow rays one by one, from
- *
- *     uint32_t find_occluder(const RtAccel *self, const RtScratch *scratch, const RtRay *ray,
- *                            RtTally *tallies);
- *
- * which returns the occluder of a shadow ray through rt_answer_occluded or rt_pass_on_occluded. All other
- * rays are handed down in streams. */
-#define RT_DEFINE_SHADOW_KERNELS(find_occluder)                                                              \
-    RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,           \
-                                size_t count, uint32_t *occluders, RtTally *tallies) {                       \
-        for (size_t i = 0, next; i < count; i = next) {                                                      \
-            for (next = i; next < count && rays[next].kind != RT_RAY_SHADOW; next++) {                       \
-            }                                                                                                \
-            if (next > i) rt_hand_down_occluded(accel, scratch, rays + i, next - i, occluders + i, tallies); \
-            for (; next < count && rays[next].kind == RT_RAY_SHADOW; next++) {                               \
-                occluders[next] = find_occluder(accel, scratch, &rays[next], tallies);                       \
-            }                                                                                                \
-        }                                                                                                    \
-    }                                                                                                        \
-    RT_DEFINE_BOTH(occluded, uint32_t, occluded_all)                                                         \
-    RT_DEFINE_HANDED_DOWN(nearest, RtHit)
 
 #endif

@@ -19,8 +19,8 @@
 #ifndef RT_ACCEL_SPHERE_PAIRS_H
 #define RT_ACCEL_SPHERE_PAIRS_H
 
+#include "accel/clipping.h"
 #include "accel/kernel.h"
-#include "accel/surface.h"
 #include "accel/watertight.h"
 #include "core/base/simd_across.h"
 
@@ -117,7 +117,7 @@ RT_KERNEL void hit_four_pairs(const RtGeometry *g, const SpherePair pairs[PAIRS]
     find_roots(&chords, &first, &second);
     const RtFloat4 longest = rt_max(rt_max(rt_abs(dir[0]), rt_abs(dir[1])), rt_abs(dir[2]));
     const RtFloat4 tmin = org[3], tmax = rt_min(dir[3], rt_all4(FLT_MAX));
-    const RtInt4 usual = (longest >= RT_SURFACE_LEAST_DIR) & (longest <= RT_SURFACE_MOST_DIR);
+    const RtInt4 usual = (longest >= RT_ORDINARY_LEAST_DIR) & (longest <= RT_ORDINARY_MOST_DIR);
     const RtInt4 first_sure = usual & (rt_abs(first) * longest >= 0x1p-60f);
     const RtInt4 both_sure = first_sure & (rt_abs(second) * longest >= 0x1p-60f);
     const RtInt4 first_hit = first_sure & (first >= tmin) & (first <= tmax);

@@ -59,7 +59,7 @@ SUBJECTS = {
     "accel/raster/": ("light_exact light_cells item light", "item+bvh light+bvh"),
     "accel/registry.": ("overlays plugins", "bvh"),
     "accel/sphere_": ("error_bounds largest_errors lanes wide wide_exact", "wide brute"),
-    "accel/surface.": ("overlap kd", "kd:overlap=exact grid:overlap=exact"),
+    "accel/clipping.": ("overlap kd", "kd:overlap=exact grid:overlap=exact"),
     "accel/tree/": ("trees descriptions reinsertion bvh_spatial builds clusters",
                     "bvh bvh:build=spatial clusters:method=goldsmith-salmon"),
     "accel/tree/hierarchy.": ("descriptions bvh_spatial", "bvh bvh:build=spatial"),

@@ -11,8 +11,8 @@
  * Counting: an extent test per box tested, including the root's; a step per node visited. */
 #include "accel/bvh/bvh.h"
 
+#include "accel/clipping.h"
 #include "accel/mailbox.h"
-#include "accel/surface.h"
 
 #define PARAMS(X)                                                                                            \
     X(PARAM_BUILD, "build", RT_CHOICE("binned", RT_TREE_METHODS),                                            \
@@ -137,13 +137,13 @@ RT_KERNEL void walk(const RtBvh *self, RtMailbox *mailbox, const RtPreparedRay *
 }
 
 /* With split references a ray meets the leaf that contains the surface near the hit; if hits are not near
- * surfaces, it is tested against all objects (accel/surface.h, accel/tree/spatial.c). */
+ * surfaces, it is tested against all objects (accel/clipping.h, accel/tree/spatial.c). */
 RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
                       RtTally *tally) {
     const RtGeometry *g = &self->base.scene->geometry;
     if (!self->hierarchy.split_refs) {
         walk(self, NULL, ray, any, best, tally);
-    } else if (rt_surface_is_near(ray->dir[ray->kz])) {
+    } else if (rt_dir_is_ordinary(ray->dir[ray->kz])) {
         RtMailbox *mailbox = self->mailbox ? scratch : NULL;
         rt_mailbox_next_ray(mailbox, g);
         walk(self, mailbox, ray, any, best, tally);

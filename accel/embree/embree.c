@@ -263,7 +263,7 @@ RT_KERNEL void trace_batch(const RtEmbree *self, Batch *batch, Context *context,
 
 RT_KERNEL void search_lanes(const RtEmbreeSlot *slot, const void *context, uint32_t primitive,
                             const int *valid, Word *rays, unsigned lanes, bool any, bool counted) {
-    const RtGeometry *geometry = &slot->self->base.scene->geometry;
+    const RtGeometry *geometry = &slot->self->isa.base.scene->geometry;
     const Trace *trace = context;
     uint32_t id = slot->ids[primitive];
     for (unsigned i = 0; i < lanes; i++) {
@@ -316,7 +316,8 @@ RT_KERNEL void test_lanes(const RtEmbreeSlot *slot, const void *context, uint32_
     for (unsigned i = 0; i < lanes; i++) {
         float t;
         if (!valid[i]) continue;
-        if (!lane_hit(&slot->self->base.scene->geometry, slot->ids[primitive], context, rays, lanes, i, &t))
+        if (!lane_hit(&slot->self->isa.base.scene->geometry, slot->ids[primitive], context, rays, lanes, i,
+                      &t))
             continue;
         word_at(rays, lanes, FIELD_TFAR, i)->f = any ? -INFINITY : t;
         if (any) continue;
@@ -359,14 +360,14 @@ static Trace begin_trace(const RtEmbree *self, const RtScratch *scratch, bool co
 
 /* Whether Embree proposes all objects that this ray hits (embree.h). |dir| is at most 2^17 * shrink. */
 RT_KERNEL bool is_in_reach(const RtEmbree *self, const RtRay *ray, double shrink) {
-    return rt_thickness(ray->org, &self->base.scene->geometry.box) <= self->max_thickness &&
+    return rt_thickness(ray->org, &self->isa.base.scene->geometry.box) <= self->max_thickness &&
            0x1p-150 * 0x1p17 * shrink <= 0.25 * (double)self->growth;
 }
 
 /* Writes a ray to the batch; one out of reach is answered at once, and is inactive in the batch. */
 RT_KERNEL void put_search(const RtEmbree *self, Batch *batch, unsigned lanes, size_t i, const RtRay *ray,
                           RtCrossing *crossings, bool any, RtTally *tally) {
-    const RtGeometry *geometry = &self->base.scene->geometry;
+    const RtGeometry *geometry = &self->isa.base.scene->geometry;
     double stretch = stretch_of(ray->dir);
     Search *search = &batch->searches[i];
     rt_hit_ray(&search->ray, geometry, ray, crossings);
@@ -398,12 +399,8 @@ RT_KERNEL void answer_user(const RtEmbree *self, const RtScratch *scratch, const
         bool coherent = is_coherent(ray);
         Trace trace = begin_trace(self, scratch, coherent, tallies != NULL);
         trace_batch(self, batch, &trace.context, coherent, n, any, lanes, stream);
-        for (size_t i = 0; i < n; i++) {
-            if (any)
-                occluders[begin + i] = batch->searches[i].best.object;
-            else
-                hits[begin + i] = batch->searches[i].best;
-        }
+        for (size_t i = 0; i < n; i++)
+            rt_put_answer(&batch->searches[i].best, begin + i, any, hits, occluders, NULL);
     }
 }
 
@@ -588,34 +585,5 @@ RT_KERNEL void answer_all(const RtAccel *accel, const RtScratch *scratch, const 
 
 RT_DEFINE_STREAM_KERNELS(answer_all)
 
-static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
-    accel->scratch_bytes = sizeof(Batch);
-    return rt_embree_build(accel, what, error);
-}
-
-/* The fastest setting depends on the scene and on the rays: packets for coherent rays, AVX2 on some machines
- * that have AVX-512. `robust` costs speed, so it is off. */
-static const RtBestOf bests[] = {
-    {"best", "query=1|8|16|stream,quality=medium|high,isa=avx2|avx512",
-     "Embree's fastest setting for each scene and ray kind"},
-    {"one", "query=1,quality=medium|high,isa=avx2|avx512", "its fastest setting for single rays"},
-};
-
-const RtAccelOps rt_embree_ops = {
-    .name = "embree",
-    .summary = "Intel's library: the competitor (mode=native) and a reference (mode=user)",
-    .paper = "Wald, Woop, Benthin, Johnson & Ernst 2014, Embree: A Kernel Framework for Efficient CPU Ray "
-             "Tracing, ACM TOG 33(4)",
-    RT_PARAMS_OF(rt_embree_params),
-    .bests = bests,
-    .best_count = sizeof bests / sizeof bests[0],
-    .available = rt_embree_available,
-    .bytes = sizeof(RtEmbree),
-    .build = build,
-    .destroy = rt_embree_destroy,
-    RT_KERNEL_OPS,
-    .describe = rt_embree_describe,
-    .validate = rt_embree_validate,
-    .library = rt_embree_library,
-    .check = rt_embree_check,
-};
+const RtKernels rt_embree_kernels = {nearest_timed, occluded_timed, nearest_counted, occluded_counted,
+                                     sizeof(Batch)};

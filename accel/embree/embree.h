@@ -21,7 +21,7 @@
 #ifndef RT_ACCEL_EMBREE_H
 #define RT_ACCEL_EMBREE_H
 
-#include "accel/accel.h"
+#include "accel/isa.h"
 
 /* RT_WITH_EMBREE is the major version. Embree 4 no longer has streams of single rays. */
 #if RT_WITH_EMBREE >= 4
@@ -58,7 +58,7 @@ typedef enum RtEmbreeQueryKind {
 } RtEmbreeQueryKind;
 
 struct RtEmbree {
-    RtAccel base;
+    RtIsaAccel isa; /* its kernels are the same for all */
     RtEmbreeDevice device;
     RTCScene scene;
     bool user; /* else native */
@@ -79,39 +79,12 @@ static inline float rt_embree_limit(float t, double shrink) {
     return (float)((double)t * shrink * (1 + 0x1p-20)) + FLT_MIN;
 }
 
-/* ---- embree.c: callbacks of user geometry, which get a primitive and a packet of rays ---- */
+/* ---- embree.c ---- */
 
+extern const RtKernels rt_embree_kernels;
+
+/* Callbacks of user geometry, which get a primitive and a packet of rays. */
 void rt_embree_intersect(const struct RTCIntersectFunctionNArguments *arguments);
 void rt_embree_occluded(const struct RTCOccludedFunctionNArguments *arguments);
-
-/* ---- embree_build.c, for the table of operations ---- */
-
-/* The choices of `isa`, in order, "default" first. */
-#define RT_EMBREE_ISAS "default|sse2|sse4.2|avx|avx2|avx512"
-
-#define RT_EMBREE_PARAMS(X)                                                                                  \
-    X(RT_EMBREE_MODE, "mode", RT_CHOICE("native", "native|user"),                                            \
-      "Embree's own triangles and spheres, or our hit functions in its hierarchy",                           \
-      "native is the competitor")                                                                            \
-    X(RT_EMBREE_QUALITY, "quality", RT_CHOICE("medium", "low|medium|high"),                                  \
-      "build: Morton codes, binned SAH, SAH with spatial splits", "Embree's default")                        \
-    X(RT_EMBREE_ISA, "isa", RT_CHOICE("default", RT_EMBREE_ISAS),                                            \
-      "instruction set; default: the widest that the processor has", "Embree's default")                     \
-    X(RT_EMBREE_ROBUST, "robust", RT_FLAG("off"),                                                            \
-      "no ray passes between triangles that share an edge; user mode is exact either way",                   \
-      "Embree's default")                                                                                    \
-    X(RT_EMBREE_QUERY, "query", RT_CHOICE("1", "1|8|16|stream"),                                             \
-      "rays per call: one, a packet of 8 or 16, a stream (not in Embree 4)", "the most general one")
-
-enum { RT_EMBREE_PARAMS(RT_PARAM_INDEX) RT_EMBREE_PARAM_COUNT };
-extern const RtParam rt_embree_params[RT_EMBREE_PARAM_COUNT];
-
-RtStatus rt_embree_available(const RtValue *values, RtError *error);
-RtStatus rt_embree_build(RtAccel *accel, const RtBuild *what, RtError *error);
-void rt_embree_destroy(RtAccel *accel);
-void rt_embree_describe(const RtAccel *accel, RtDescription *out);
-RtStatus rt_embree_validate(const RtAccel *accel, RtError *error);
-RtStatus rt_embree_check(const RtAccel *accel, RtError *error);
-bool rt_embree_library(char *out, size_t size);
 
 #endif

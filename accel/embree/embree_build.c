@@ -9,7 +9,25 @@
 #include <stdatomic.h>
 #include <stdio.h>
 
-const RtParam rt_embree_params[RT_EMBREE_PARAM_COUNT] = {RT_EMBREE_PARAMS(RT_PARAM_ENTRY)};
+/* The choices of `isa`, in order, "default" first. */
+#define ISAS "default|sse2|sse4.2|avx|avx2|avx512"
+
+#define PARAMS(X)                                                                                            \
+    X(PARAM_MODE, "mode", RT_CHOICE("native", "native|user"),                                                \
+      "Embree's own triangles and spheres, or our hit functions in its hierarchy",                           \
+      "native is the competitor")                                                                            \
+    X(PARAM_QUALITY, "quality", RT_CHOICE("medium", "low|medium|high"),                                      \
+      "build: Morton codes, binned SAH, SAH with spatial splits", "Embree's default")                        \
+    X(PARAM_ISA, "isa", RT_CHOICE("default", ISAS),                                                          \
+      "instruction set; default: the widest that the processor has", "Embree's default")                     \
+    X(PARAM_ROBUST, "robust", RT_FLAG("off"),                                                                \
+      "no ray passes between triangles that share an edge; user mode is exact either way",                   \
+      "Embree's default")                                                                                    \
+    X(PARAM_QUERY, "query", RT_CHOICE("1", "1|8|16|stream"),                                                 \
+      "rays per call: one, a packet of 8 or 16, a stream (not in Embree 4)", "the most general one")
+
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- the device ---- */
 
@@ -35,9 +53,9 @@ static bool processor_has(uint32_t isa) {
     }
 }
 
-RtStatus rt_embree_available(const RtValue *values, RtError *error) {
-    const uint32_t isa = values[RT_EMBREE_ISA].choice;
-    if (values[RT_EMBREE_QUERY].choice == RT_EMBREE_STREAM && !RT_EMBREE_STREAMS)
+static RtStatus available(const RtValue *values, RtError *error) {
+    const uint32_t isa = values[PARAM_ISA].choice;
+    if (values[PARAM_QUERY].choice == RT_EMBREE_STREAM && !RT_EMBREE_STREAMS)
         return rt_fail(error, RT_NOT_AVAILABLE,
                        "accelerator embree: Embree 4 has no streams; choose query=1, 8 or 16");
     if (processor_has(isa)) return RT_OK;
@@ -81,7 +99,7 @@ static RtStatus open_device(RtEmbreeDevice *device, uint32_t isa, int threads, R
 }
 
 /* The version at run time, and the instruction set of isa=default on this machine. */
-bool rt_embree_library(char *out, size_t size) {
+static bool library(char *out, size_t size) {
     if (size > 0) out[0] = '\0';
     RtEmbreeDevice device;
     if (open_device(&device, ISA_DEFAULT, 0, NULL) != RT_OK) return false;
@@ -94,12 +112,18 @@ bool rt_embree_library(char *out, size_t size) {
     return true;
 }
 
+static RtStatus check(const RtAccel *accel, RtError *error) {
+    const RtEmbreeDevice *device = &((const RtEmbree *)accel)->device;
+    int code = atomic_load(&device->code);
+    return code == RTC_ERROR_NONE ? RT_OK : fail(code, device->message, error);
+}
+
 /* ---- build ---- */
 
 /* Embree asks for the box of each primitive: enlarged. */
 static void bounds_of(const struct RTCBoundsFunctionArguments *arguments) {
     const RtEmbreeSlot *slot = arguments->geometryUserPtr;
-    const RtBox *box = &slot->self->base.scene->geometry.boxes[slot->ids[arguments->primID]];
+    const RtBox *box = &slot->self->isa.base.scene->geometry.boxes[slot->ids[arguments->primID]];
     double growth = (double)slot->self->growth;
     *arguments->bounds_o = (struct RTCBounds){
         .lower_x = rt_float_below((double)box->lo.x - growth),
@@ -114,7 +138,7 @@ static void bounds_of(const struct RTCBoundsFunctionArguments *arguments) {
 /* Sets what follows from the reach: at least four times the size of the scene, and twice the distance of the
  * camera. */
 static void set_reach(RtEmbree *self) {
-    const RtScene *scene = self->base.scene;
+    const RtScene *scene = self->isa.base.scene;
     const RtBox *box = &scene->geometry.box;
     double size = fmax(rt_box_longest_side(*box), 0), magnitude = rt_box_largest_coordinate(*box);
     double camera = (double)rt_thickness(scene->camera.from, box) * 0x1p20;
@@ -145,9 +169,9 @@ static void attach_user(RtEmbree *self, RtShape shape, const uint32_t *ids, uint
 /* Embree uses the scene's vertices. It reads 16 bytes of each, 4 beyond the end of the last one; a block of
  * rt_alloc is padded enough. */
 static void attach_triangles(RtEmbree *self, enum RTCBuildQuality quality) {
-    const RtGeometry *g = &self->base.scene->geometry;
+    const RtGeometry *g = &self->isa.base.scene->geometry;
     size_t count = (size_t)g->triangle_count * 3;
-    self->indices = rt_arena_alloc(&self->base.memory, count, sizeof(uint32_t));
+    self->indices = rt_arena_alloc(&self->isa.base.memory, count, sizeof(uint32_t));
     if (!self->indices) return;
     for (size_t i = 0; i < count; i++) self->indices[i] = (uint32_t)i;
     RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -162,7 +186,7 @@ static void attach_triangles(RtEmbree *self, enum RTCBuildQuality quality) {
 _Static_assert(sizeof(RtSphere) == 4 * sizeof(float), "centre and radius, as Embree wants them");
 
 static void attach_spheres(RtEmbree *self, enum RTCBuildQuality quality) {
-    const RtGeometry *g = &self->base.scene->geometry;
+    const RtGeometry *g = &self->isa.base.scene->geometry;
     RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     rtcSetGeometryBuildQuality(geometry, quality);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, g->spheres, 0,
@@ -171,7 +195,7 @@ static void attach_spheres(RtEmbree *self, enum RTCBuildQuality quality) {
 }
 
 static void attach_all(RtEmbree *self, enum RTCBuildQuality quality) {
-    const RtGeometry *g = &self->base.scene->geometry;
+    const RtGeometry *g = &self->isa.base.scene->geometry;
     bool own[RT_SHAPE_COUNT] = {false}; /* as Embree's own geometry */
     if (!self->user) {
         own[RT_SHAPE_TRIANGLE] = own[RT_SHAPE_SPHERE] = true;
@@ -199,32 +223,32 @@ static RtStatus check_width(const RtBox *box, RtError *error) {
                    (double)width, (double)MOST_NATIVE_WIDTH);
 }
 
-RtStatus rt_embree_build(RtAccel *accel, const RtBuild *what, RtError *error) {
+static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     static const enum RTCBuildQuality qualities[] = {RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM,
                                                      RTC_BUILD_QUALITY_HIGH};
     const RtValue *values = what->values;
-    enum RTCBuildQuality quality = qualities[values[RT_EMBREE_QUALITY].choice];
+    enum RTCBuildQuality quality = qualities[values[PARAM_QUALITY].choice];
     RtEmbree *self = (RtEmbree *)accel;
-    self->user = values[RT_EMBREE_MODE].choice == 1;
-    self->query = (RtEmbreeQueryKind)values[RT_EMBREE_QUERY].choice;
+    self->user = values[PARAM_MODE].choice == 1;
+    self->query = (RtEmbreeQueryKind)values[PARAM_QUERY].choice;
     accel->exact = self->user;
     /* Without the flag its box test is one fused multiply-add of plane, 1 / dir and org / dir. */
-    accel->absolute = !self->user && !values[RT_EMBREE_ROBUST].flag;
+    accel->absolute = !self->user && !values[PARAM_ROBUST].flag;
     accel->counts = false;
-    if (!self->user) RT_TRY(check_width(&self->base.scene->geometry.box, error));
-    RT_TRY(open_device(&self->device, values[RT_EMBREE_ISA].choice, what->threads, error));
+    rt_isa_use(accel, &rt_embree_kernels);
+    if (!self->user) RT_TRY(check_width(&self->isa.base.scene->geometry.box, error));
+    RT_TRY(open_device(&self->device, values[PARAM_ISA].choice, what->threads, error));
     set_reach(self);
     self->scene = rtcNewScene(self->device.device);
-    rtcSetSceneFlags(self->scene,
-                     values[RT_EMBREE_ROBUST].flag ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    rtcSetSceneFlags(self->scene, values[PARAM_ROBUST].flag ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     rtcSetSceneBuildQuality(self->scene, quality);
     attach_all(self, quality);
     RT_TRY(rt_arena_check(&accel->memory, "Embree's list of vertices", error));
     rtcCommitScene(self->scene);
-    return rt_embree_check(accel, error);
+    return check(accel, error);
 }
 
-void rt_embree_destroy(RtAccel *accel) {
+static void destroy(RtAccel *accel) {
     RtEmbree *self = (RtEmbree *)accel;
     if (self->scene) rtcReleaseScene(self->scene);
     if (self->device.device) rtcReleaseDevice(self->device.device);
@@ -232,15 +256,9 @@ void rt_embree_destroy(RtAccel *accel) {
 
 /* ---- describe, validate ---- */
 
-RtStatus rt_embree_check(const RtAccel *accel, RtError *error) {
-    const RtEmbreeDevice *device = &((const RtEmbree *)accel)->device;
-    int code = atomic_load(&device->code);
-    return code == RTC_ERROR_NONE ? RT_OK : fail(code, device->message, error);
-}
-
 /* Bytes: what Embree has allocated, and our list of indices, which it needs; not the vertices, which belong
  * to the scene. */
-void rt_embree_describe(const RtAccel *accel, RtDescription *out) {
+static void describe(const RtAccel *accel, RtDescription *out) {
     const RtEmbree *self = (const RtEmbree *)accel;
     const RtGeometry *g = &accel->scene->geometry;
     uint64_t indices = self->indices ? (uint64_t)g->triangle_count * 3 * sizeof(uint32_t) : 0;
@@ -249,9 +267,9 @@ void rt_embree_describe(const RtAccel *accel, RtDescription *out) {
                            RT_NO_PREDICTION};
 }
 
-RtStatus rt_embree_validate(const RtAccel *accel, RtError *error) {
+static RtStatus validate(const RtAccel *accel, RtError *error) {
     const RtEmbree *self = (const RtEmbree *)accel;
-    RT_TRY(rt_embree_check(accel, error));
+    RT_TRY(check(accel, error));
     if (!self->user || accel->scene->geometry.object_count == 0) return RT_OK;
     struct RTCBounds bounds;
     rtcGetSceneBounds(self->scene, &bounds);
@@ -260,3 +278,30 @@ RtStatus rt_embree_validate(const RtAccel *accel, RtError *error) {
     if (rt_box_contains(all, accel->scene->geometry.box)) return RT_OK;
     return rt_fail(error, RT_MISMATCH, "Embree's bounds do not contain the box of the scene");
 }
+
+/* The fastest setting depends on the scene and on the rays: packets for coherent rays, AVX2 on some machines
+ * that have AVX-512. `robust` costs speed, so it is off. */
+static const RtBestOf bests[] = {
+    {"best", "query=1|8|16|stream,quality=medium|high,isa=avx2|avx512",
+     "Embree's fastest setting for each scene and ray kind"},
+    {"one", "query=1,quality=medium|high,isa=avx2|avx512", "its fastest setting for single rays"},
+};
+
+const RtAccelOps rt_embree_ops = {
+    .name = "embree",
+    .summary = "Intel's library: the competitor (mode=native) and a reference (mode=user)",
+    .paper = "Wald, Woop, Benthin, Johnson & Ernst 2014, Embree: A Kernel Framework for Efficient CPU Ray "
+             "Tracing, ACM TOG 33(4)",
+    RT_PARAMS_OF(params),
+    .bests = bests,
+    .best_count = sizeof bests / sizeof bests[0],
+    .available = available,
+    .bytes = sizeof(RtEmbree),
+    .build = build,
+    .destroy = destroy,
+    RT_ISA_OPS,
+    .describe = describe,
+    .validate = validate,
+    .library = library,
+    .check = check,
+};

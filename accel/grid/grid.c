@@ -28,7 +28,7 @@
  * far(i1) >= t likewise. Then the argument continues inside. A nested walk ends where the voxel does, or
  * beyond the best t; only the outermost walk ends the search.
  *
- * With overlap=exact a voxel lists fewer objects; accel/surface.h proves that they suffice.
+ * With overlap=exact a voxel lists fewer objects; accel/clipping.h proves that they suffice.
  *
  * Counting: an extent test for the box of the grid; a step per voxel visited. With nested grids also a step
  * per grid walked through, including the outermost. */
@@ -299,7 +299,7 @@ RT_KERNEL void search(const RtGrid *self, void *scratch, const RtPreparedRay *ra
     bool met = rt_box_hit(&self->box, ray, ray->tmax, &t);
     RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "grid", .box = &self->box, .met = met);
     if (!met) return;
-    if (self->surfaces && !rt_surface_serves(&self->served, ray)) {
+    if (self->surfaces && !rt_clipped_serves(&self->served, ray)) {
         rt_test_all(&self->base.scene->geometry, ray, any, best, tally);
         return;
     }

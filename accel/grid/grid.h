@@ -10,13 +10,13 @@
  * nested block lists exactly the objects whose boxes, grown by `slack`, overlap its intervals of planes on
  * all three axes, and those of all enclosing voxels; an interval contains its lower plane but not its upper
  * one, unless it is the last of its block. Lists are ascending. With overlap=exact a voxel lists only those
- * of them whose surfaces meet it, too, and rays that these do not serve (accel/surface.h) are tested against
+ * of them whose surfaces meet it, too, and rays that these do not serve (accel/clipping.h) are tested against
  * every object. */
 #ifndef RT_ACCEL_GRID_GRID_H
 #define RT_ACCEL_GRID_GRID_H
 
 #include "accel/accel.h"
-#include "accel/surface.h"
+#include "accel/clipping.h"
 #include "core/shape/overlap.h"
 
 #define RT_GRID_PARAMS(X)                                                                                    \
@@ -83,7 +83,7 @@ typedef struct RtGrid {
     bool mailbox;
     bool surfaces;        /* overlap=exact */
     double slack;         /* objects' boxes are grown by this */
-    RtSurfaceRays served; /* rays that lists of surfaces serve */
+    RtClippedRays served; /* rays that lists of surfaces serve */
 } RtGrid;
 
 /* The voxel of `block` at given coordinates, by its number in the level. */

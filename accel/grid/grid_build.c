@@ -6,7 +6,7 @@
  * An object goes into all voxels that its box meets, or with overlap=exact into those of them that its
  * surface comes within `margin` of, found by bisecting the range of voxels that the box meets. Why surfaces
  * suffice: grid.c proves that the walk visits every voxel, on every level, whose three intervals contain the
- * thick ray at the t of a hit; accel/surface.h, that the voxels of its q are among those and list the object.
+ * thick ray at the t of a hit; accel/clipping.h, that the voxels of its q are among those and list the object.
  * A range is rejected only if none of its voxels comes near. `slack` adds to both distances, which only
  * lengthens lists. */
 #include "accel/grid/grid.h"
@@ -442,6 +442,6 @@ RtStatus rt_grid_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     grid->slack = values[RT_GRID_SLACK].f;
     if (g->object_count == 0) return RT_OK;
     grid->box = choose_box(g, values[RT_GRID_FLAT].f, values[RT_GRID_MARGIN].f);
-    grid->served = rt_surface_rays(&g->box, &grid->box);
+    grid->served = rt_clipped_rays(&g->box, &grid->box);
     return make_levels(grid, what, error);
 }

@@ -2,7 +2,7 @@
 /* The kernels of item, compiled once for each instruction set (accel/isa.h). Triangles, RT_LANES at a time in
  * float32: the samples that may see them, and their tiles; and drawing one into a tile, at the samples of a
  * block at once. And answering primary rays from the samples that they belong to: rays of triangles are
- * tested RT_LANES at a time; rays that are not those of samples are passed on, sixty-four at a time. */
+ * tested RT_LANES at a time; rays that are not those of samples are passed on. */
 #include "accel/item/item.h"
 #include "accel/kernel.h"
 
@@ -379,15 +379,8 @@ static void draw(RtItemTile *tile, const RtRef *objects, size_t count) {
 
 enum {
     PREFETCH = 64, /* rays ahead */
-    PASSED = 64,   /* rays passed on at once */
     RUN = 256 /* rays whose kinds are looked at before they are answered: they are read from memory once */
 };
-
-typedef struct PassedRays {
-    RtRay ray[PASSED];
-    size_t place[PASSED];
-    uint32_t count;
-} PassedRays;
 
 /* A run of primary rays. */
 typedef struct RayRun {
@@ -397,24 +390,12 @@ typedef struct RayRun {
     RtHit *hits;
     double rows_per_sample; /* 1 / columns */
     PendingTests pending;
-    PassedRays passed;
 } RayRun;
 
-RT_KERNEL void flush_passed(RayRun *run, RtTally *tallies) {
-    PassedRays *p = &run->passed;
-    RtHit hits[PASSED];
-    if (tallies) tallies[RT_RAY_PRIMARY].passed_on += p->count;
+RT_KERNEL void pass_on(const RayRun *run, size_t i, RtTally *tallies) {
+    if (tallies) tallies[RT_RAY_PRIMARY].passed_on++;
     RT_OBSERVE(tallies, .kind = RT_TRACED_PASSED_ON, .what = "item");
-    rt_hand_down_nearest(&run->buffer->isa.base, run->scratch, p->ray, p->count, hits, tallies);
-    for (uint32_t i = 0; i < p->count; i++) run->hits[p->place[i]] = hits[i];
-    p->count = 0;
-}
-
-RT_KERNEL void pass_on(RayRun *run, size_t i, RtTally *tallies) {
-    PassedRays *p = &run->passed;
-    p->ray[p->count] = run->rays[i];
-    p->place[p->count++] = i;
-    if (p->count == PASSED) flush_passed(run, tallies);
+    rt_hand_down_nearest(&run->buffer->isa.base, run->scratch, &run->rays[i], 1, &run->hits[i], tallies);
 }
 
 RT_COLD static void observe_pending(const RtGeometry *g, const PendingTests *p, const float *t) {
@@ -435,7 +416,7 @@ RT_KERNEL void flush_pending(RayRun *run, RtTally *tallies) {
     RT_COUNT(tally, object_hits, (uint32_t)__builtin_popcount(hits));
     if (RT_OBSERVED(tallies)) observe_pending(rt_item_geometry(run->buffer), p, t);
     for (uint32_t k = 0; k < p->count; k++)
-        run->hits[p->place[k]] = rt_answer_nearest((RtHit){t[k], p->id[k]}, tally);
+        rt_put_answer(&(RtHit){t[k], p->id[k]}, p->place[k], false, run->hits, NULL, tally);
     p->count = 0;
 }
 
@@ -468,7 +449,7 @@ RT_KERNEL void answer_run(const RtAccel *accel, const RtScratch *scratch, const 
     run.rays = rays;
     run.hits = hits;
     run.rows_per_sample = 1.0 / self->view.sampling.columns;
-    run.pending.count = run.passed.count = 0;
+    run.pending.count = 0;
     const bool mixed = g->triangle_count < g->object_count;
     const RtFloat4 org = {(float)self->view.eye.x, (float)self->view.eye.y, (float)self->view.eye.z,
                           (float)self->view.near};
@@ -483,7 +464,7 @@ RT_KERNEL void answer_run(const RtAccel *accel, const RtScratch *scratch, const 
         RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "sample", .index = ray->source);
         __builtin_prefetch(ray + PREFETCH);
         if (id == RT_NO_OBJECT) {
-            hits[i] = rt_answer_nearest(RT_MISS, tally);
+            rt_put_answer(&RT_MISS, i, false, hits, NULL, tally);
         } else if (mixed ? is_triangle(g, id, &triangle) : true) {
             __builtin_prefetch(&g->triangles[triangle]);
             __builtin_prefetch(&g->triangles[triangle].v[2].z);
@@ -494,11 +475,10 @@ RT_KERNEL void answer_run(const RtAccel *accel, const RtScratch *scratch, const 
             RtHit hit = RT_MISS;
             rt_hit_ray(&prepared, g, ray, scratch->crossings);
             rt_test_object(g, id, &prepared, false, &hit, tally);
-            hits[i] = rt_answer_nearest(hit, tally);
+            rt_put_answer(&hit, i, false, hits, NULL, tally);
         }
     }
     if (run.pending.count > 0) flush_pending(&run, tallies);
-    if (run.passed.count > 0) flush_passed(&run, tallies);
 }
 
 /* Primary rays of a stream; runs of others are handed down. */

@@ -16,7 +16,7 @@
  * that lists the object. A leaf is skipped only if it is entered beyond the best t, and no hit is rejected
  * for lying outside the current cell.
  *
- * With overlap=exact the same follows from accel/surface.h. At t the ray is in all closed cells that contain
+ * With overlap=exact the same follows from accel/clipping.h. At t the ray is in all closed cells that contain
  * its q, and q is in the part of the object in each such cell, because parts are boxes of all points of the
  * cell within the margin of the surface and inside the object's box. So if q lies below the split, the part
  * begins below it; if q lies in the split, either child that lists the object will do.
@@ -98,7 +98,7 @@ RT_KERNEL void search(const RtKd *self, void *scratch, const RtPreparedRay *ray,
     bool met = span.enter <= span.leave;
     RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "node", .box = &self->box, .met = met);
     if (!met) return;
-    if (self->surfaces && !rt_surface_serves(&self->served, ray)) {
+    if (self->surfaces && !rt_clipped_serves(&self->served, ray)) {
         rt_test_all(g, ray, any, best, tally);
         return;
     }

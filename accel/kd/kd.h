@@ -14,7 +14,7 @@
 #define RT_ACCEL_KD_KD_H
 
 #include "accel/accel.h"
-#include "accel/surface.h"
+#include "accel/clipping.h"
 #include "core/shape/overlap.h"
 
 #include <stdatomic.h>
@@ -64,7 +64,7 @@ typedef struct RtKd {
     uint32_t max_leaf_size, max_depth, failures;
     bool mailbox;
     bool surfaces; /* overlap=exact */
-    RtSurfaceRays served;
+    RtClippedRays served;
 } RtKd;
 
 static inline bool rt_kd_is_leaf(const RtKdNode *node) {

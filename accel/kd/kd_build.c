@@ -347,6 +347,6 @@ RtStatus rt_kd_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     kd->surfaces = values[RT_KD_OVERLAP].choice == OVERLAP_EXACT;
     if (g->object_count == 0) return RT_OK;
     kd->box = rt_box_widened(g->box, values[RT_KD_MARGIN].f);
-    kd->served = rt_surface_rays(&g->box, &kd->box);
+    kd->served = rt_clipped_rays(&g->box, &kd->box);
     return build_tree(kd, g->object_count, what->limit, what->threads, error);
 }

@@ -16,7 +16,7 @@
 #ifndef RT_ACCEL_PLUGIN_CHANNEL_H
 #define RT_ACCEL_PLUGIN_CHANNEL_H
 
-#include "accel/remote.h"
+#include "accel/plugin.h"
 #include "core/shape/sphere.h"
 
 #include <stdatomic.h>

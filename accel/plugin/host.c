@@ -217,23 +217,26 @@ static bool can_pass_on(PluginQuery *query, const RtRay *rays, size_t count) {
 }
 
 /* Traces a stream in the layer below, which may be a plugin's, too. */
-#define DEFINE_BELOW(question, Answer, Theirs, miss)                                                         \
-    static void question##_below(raytally_query *face, const raytally_ray *rays, size_t count,               \
-                                 Theirs *answers) {                                                          \
-        PluginQuery *query = (PluginQuery *)face;                                                            \
-        const RtRay *stream = (const RtRay *)rays;                                                           \
-        Answer *out = (Answer *)answers;                                                                     \
-        report_counted(&query->events);                                                                      \
-        if (can_pass_on(query, stream, count)) {                                                             \
-            rt_hand_down_##question(&query->accel->base, query->scratch, stream, count, out,                 \
-                                    query->counting ? query->below : NULL);                                  \
-        } else {                                                                                             \
-            for (size_t i = 0; i < count; i++) out[i] = miss;                                                \
-        }                                                                                                    \
-        now = &query->now;                                                                                   \
+static void trace_below(PluginQuery *query, const RtRay *rays, size_t count, RtHit *hits,
+                        uint32_t *occluders) {
+    report_counted(&query->events);
+    if (can_pass_on(query, rays, count)) {
+        rt_trace_stream(query->accel->base.below, query->scratch + 1, rays, count, hits, occluders,
+                        query->counting ? query->below : NULL);
+    } else {
+        for (size_t i = 0; i < count; i++) rt_put_answer(&RT_MISS, i, !hits, hits, occluders, NULL);
     }
-DEFINE_BELOW(nearest, RtHit, raytally_hit, RT_MISS)
-DEFINE_BELOW(occluded, uint32_t, uint32_t, RT_NO_OBJECT)
+    now = &query->now;
+}
+
+static void nearest_below(raytally_query *face, const raytally_ray *rays, size_t count, raytally_hit *hits) {
+    trace_below((PluginQuery *)face, (const RtRay *)rays, count, (RtHit *)hits, NULL);
+}
+
+static void occluded_below(raytally_query *face, const raytally_ray *rays, size_t count,
+                           uint32_t *occluders) {
+    trace_below((PluginQuery *)face, (const RtRay *)rays, count, NULL, occluders);
+}
 
 static void show(const raytally_prepared *ray, uint32_t counter, uint32_t number,
                  const raytally_box *theirs) {
@@ -467,36 +470,37 @@ static void start_counting(PluginQuery *query, raytally_counters *counters, uint
         .name = accel->ops->name, .counters = accel->counts ? &counters[kind] : NULL, .best = RT_MISS};
 }
 
-/* The two kernels of a question. Answers have the type Answer, which the plugin calls Theirs. */
-#define DEFINE_KERNELS(question, Answer, Theirs, take, is_hit)                                               \
-    static void count_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
-                                 size_t count, Answer *answers, RtTally *tallies) {                          \
-        PluginQuery *query = scratch->own;                                                                   \
-        for (size_t first = 0; first < count; first += MOST_ANSWERS) {                                       \
-            const size_t n = count - first < MOST_ANSWERS ? count - first : MOST_ANSWERS;                    \
-            raytally_counters counters[RAYTALLY_RAY_KINDS];                                                  \
-            if (tallies) start_counting(query, counters, rays[first].kind);                                  \
-            Answer *theirs = enter(query, scratch, rays + first, n, sizeof(Answer));                         \
-            query->accel->table->question(query->accel->self, query->memory, &query->now.face,               \
-                                          (const raytally_ray *)rays + first, n, (Theirs *)theirs,           \
-                                          tallies && accel->counts ? counters : NULL);                       \
-            leave(query, (const char *)theirs);                                                              \
-            take(query, rays + first, n, theirs, answers + first);                                           \
-            query->counting = false;                                                                         \
-            if (tallies) report_counted(&query->events);                                                     \
-            if (tallies) add_counters(query, counters, n, tallies);                                          \
-        }                                                                                                    \
-        for (size_t i = 0; tallies && i < count; i++) {                                                      \
-            tallies[rays[i].kind].rays++;                                                                    \
-            tallies[rays[i].kind].hits += (is_hit);                                                          \
-        }                                                                                                    \
-    }                                                                                                        \
-    static void time_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,           \
-                                size_t count, Answer *answers) {                                             \
-        count_##question(accel, scratch, rays, count, answers, NULL);                                        \
+static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                  RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
+    PluginQuery *query = scratch->own;
+    const raytally_accel_ops *table = query->accel->table;
+    void *self = query->accel->self;
+    for (size_t first = 0; first < count; first += MOST_ANSWERS) {
+        const size_t n = count - first < MOST_ANSWERS ? count - first : MOST_ANSWERS;
+        const raytally_ray *stream = (const raytally_ray *)rays + first;
+        raytally_counters counters[RAYTALLY_RAY_KINDS], *own = counted && accel->counts ? counters : NULL;
+        if (counted) start_counting(query, counters, rays[first].kind);
+        void *theirs = enter(query, scratch, rays + first, n, any ? sizeof(uint32_t) : sizeof(RtHit));
+        if (any)
+            table->occluded(self, query->memory, &query->now.face, stream, n, theirs, own);
+        else
+            table->nearest(self, query->memory, &query->now.face, stream, n, theirs, own);
+        leave(query, theirs);
+        if (any)
+            take_occluders(query, rays + first, n, theirs, occluders + first);
+        else
+            take_hits(query, rays + first, n, theirs, hits + first);
+        query->counting = false;
+        if (counted) report_counted(&query->events);
+        if (counted) add_counters(query, counters, n, tallies);
     }
-DEFINE_KERNELS(nearest, RtHit, raytally_hit, take_hits, answers[i].object != RT_NO_OBJECT)
-DEFINE_KERNELS(occluded, uint32_t, uint32_t, take_occluders, answers[i] != RT_NO_OBJECT)
+    for (size_t i = 0; counted && i < count; i++) {
+        const uint32_t object = any ? occluders[i] : hits[i].object;
+        rt_count_answer(object != RT_NO_OBJECT, &tallies[rays[i].kind]);
+    }
+}
+
+RT_DEFINE_STREAM_KERNELS(trace)
 
 static RtStatus check(const RtAccel *accel, RtError *error) {
     const Plugin *self = plugin_of(accel);
@@ -678,10 +682,7 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                             .describe = describe,
                             .validate = validate,
                             .each_box = table->each_box ? each_box : NULL,
-                            .nearest = time_nearest,
-                            .occluded = time_occluded,
-                            .nearest_counted = count_nearest,
-                            .occluded_counted = count_occluded,
+                            RT_KERNEL_OPS,
                             .open = open_query,
                             .close = close_query,
                             .begin = begin,

@@ -4,9 +4,8 @@
  *
  * /proc shows what the process uses and leaves behind: whether its memory exceeds the limit, and what becomes
  * a notice (rt_remote_notice). Without /proc there are no notices and no limit. */
-#include "accel/remote.h"
+#include "accel/kernel.h"
 #include "accel/plugin/channel.h"
-#include "accel/plugin/host.h"
 #include "core/base/memory.h"
 #include "core/base/observe.h"
 #include "core/base/process.h"
@@ -522,21 +521,18 @@ static void observe(const RtAccel *accel, const RtScratch *scratch, const RtRay 
 }
 
 /* The process times itself, so here a timed kernel is a counted one without tallies. */
-#define DEFINE_KERNELS(question, Answer, any, hits, occluders)                                               \
-    static void count_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
-                                 size_t count, Answer *answers, RtTally *tallies) {                          \
-        for (size_t first = 0; first < count; first += RT_REMOTE_RAYS) {                                     \
-            const size_t left = count - first, some = left < RT_REMOTE_RAYS ? left : RT_REMOTE_RAYS;         \
-            trace_part(accel, scratch, rays + first, (uint32_t)some, hits, occluders, tallies);              \
-        }                                                                                                    \
-        for (size_t i = 0; i < count && RT_OBSERVED(tallies); i++) observe(accel, scratch, &rays[i], any);   \
-    }                                                                                                        \
-    static void question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,    \
-                         Answer *answers) {                                                                  \
-        count_##question(accel, scratch, rays, count, answers, NULL);                                        \
+static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                  RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
+    for (size_t first = 0; first < count; first += RT_REMOTE_RAYS) {
+        const size_t left = count - first, some = left < RT_REMOTE_RAYS ? left : RT_REMOTE_RAYS;
+        trace_part(accel, scratch, rays + first, (uint32_t)some, any ? NULL : hits + first,
+                   any ? occluders + first : NULL, tallies);
     }
-DEFINE_KERNELS(nearest, RtHit, false, answers + first, NULL)
-DEFINE_KERNELS(occluded, uint32_t, true, NULL, answers + first)
+    for (size_t i = 0; counted && i < count && RT_OBSERVED(tallies); i++)
+        observe(accel, scratch, &rays[i], any);
+}
+
+RT_DEFINE_STREAM_KERNELS(trace)
 
 /* ---- the structure ---- */
 
@@ -586,10 +582,7 @@ static const RtAccelOps remote_ops = {
     .summary = "represents an accelerator in another process",
     .paper = "",
     .destroy = destroy,
-    .nearest = nearest,
-    .occluded = occluded,
-    .nearest_counted = count_nearest,
-    .occluded_counted = count_occluded,
+    RT_KERNEL_OPS,
     .open = open_query,
     .close = close_query,
     .begin = begin,

@@ -30,7 +30,7 @@ typedef struct RtHierarchy {
     uint32_t width;        /* most children of a node, 2..RT_NODE_MAX_WIDTH */
     uint32_t leaf_limit;   /* most objects of a leaf */
     double traversal_cost; /* of visiting an inner node, in object tests */
-    bool split_refs;       /* objects may be in several leaves (accel/surface.h) */
+    bool split_refs;       /* objects may be in several leaves (accel/clipping.h) */
 } RtHierarchy;
 
 static inline bool rt_node_is_leaf(const RtNode *node) {

@@ -11,9 +11,9 @@
  * Invariant. Each point of an object's surface is in the box of one of its references: when a plane cuts a
  * box both parts contain the plane, and rt_object_part shrinks a part only where there is no surface. So
  * every point s of the surface is in the box of some leaf and of all its ancestors. At the t of a hit the ray
- * is in every box that contains the point s near to it (accel/surface.h), so it meets all of these: it enters
- * each at or before t and leaves it at or after t. The rest of the proof is in core/base/ray.h. The parts of
- * a CSG tree together contain its whole box.
+ * is in every box that contains the point s near to it (accel/clipping.h), so it meets all of these: it
+ * enters each at or before t and leaves it at or after t. The rest of the proof is in core/base/ray.h. The
+ * parts of a CSG tree together contain its whole box.
  *
  * A budget limits the number of references. A node has a share of the spare references, and divides it among
  * its children by the sum of the areas of their references, which is the expected number of tests: cuts gain
@@ -22,7 +22,7 @@
  * is lost in larger ones. So the references of a node lie in one run with its spare slots behind them, its
  * nodes have as many slots, and subtrees are built in parallel. Finally the gaps between nodes are closed:
  * the tree does not depend on the number of threads. */
-#include "accel/surface.h"
+#include "accel/clipping.h"
 #include "accel/tree/hierarchy.h"
 #include "accel/tree/topdown.h"
 #include "core/base/memory.h"
@@ -95,7 +95,7 @@ typedef struct Bins {
 } Bins;
 
 /* Clips a reference to `lo`..`hi` along `axis`: *part contains all of its surface there, or all of a CSG
- * tree's box (accel/surface.h). False if there is none. */
+ * tree's box (accel/clipping.h). False if there is none. */
 static bool ref_part(const Builder *b, const RtTreeRef *ref, int axis, float lo, float hi, RtBox *part) {
     RtBox box = ref->box;
     box.lo.at[axis] = rt_maxf(lo, box.lo.at[axis]);
@@ -485,7 +485,7 @@ RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtTreeO
     const uint32_t count = geometry->object_count, root = 0;
     const uint32_t parts = SHARES * (uint32_t)rt_thread_count(threads);
     RT_TRY(check_limit(options->spatial.budget, options->spatial.limit, count, error));
-    bool is_tiny = rt_box_longest_side(geometry->box) < RT_SURFACE_LEAST_SIDE;
+    bool is_tiny = rt_box_longest_side(geometry->box) < RT_CLIPPED_LEAST_SIDE;
     uint32_t most = is_tiny ? count : (uint32_t)(count * options->spatial.budget);
     RT_ARENA(arena);
     RT_TRY(rt_tree_init(tree, most, error));

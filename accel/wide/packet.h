@@ -249,7 +249,7 @@ RT_KERNEL const RtPreparedRay *packet_ray(Packet *p, const Query *q, uint32_t i)
 RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
     uint64_t odd = 0;
     for (uint32_t i = 0; i < PACKET; i += RT_LANES)
-        odd |= (uint64_t)rt_bits(~surface_is_near(rt_load(&p->dir[p->kz][i]))) << i;
+        odd |= (uint64_t)rt_bits(~dirs_are_ordinary(rt_load(&p->dir[p->kz][i]))) << i;
     for (odd &= p->open; odd; odd &= odd - 1) {
         uint32_t i = first_ray(odd);
         rt_test_all(q->geometry, packet_ray(p, q, i), any, &p->best[i], NULL);

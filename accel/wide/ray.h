@@ -67,10 +67,10 @@ typedef struct Query {
 
 /* ---- lanes of rays ---- */
 
-/* rt_surface_is_near of rays in lanes. */
-RT_KERNEL RtInts surface_is_near(RtFloats longest) {
+/* rt_dir_is_ordinary of rays in lanes. */
+RT_KERNEL RtInts dirs_are_ordinary(RtFloats longest) {
     longest = rt_abs(longest);
-    return (longest >= RT_SURFACE_LEAST_DIR) & (longest <= RT_SURFACE_MOST_DIR);
+    return (longest >= RT_ORDINARY_LEAST_DIR) & (longest <= RT_ORDINARY_MOST_DIR);
 }
 
 /* ---- the filter ---- */
@@ -106,7 +106,7 @@ RT_KERNEL uint32_t meet_root(const Query *q, const RtRay rays[RT_LANES]) {
     RayLanes r = {.tmin = org[3], .tmax = rt_min(dir[3], rt_all(FLT_MAX))};
     const RtFloats thickness = rt_lanes_thickness(org, &q->geometry->box);
     const RtFloats longest = rt_max(rt_max(rt_abs(dir[0]), rt_abs(dir[1])), rt_abs(dir[2]));
-    RtInts met = ~surface_is_near(longest); /* or special */
+    RtInts met = ~dirs_are_ordinary(longest); /* or special */
     for (int a = 0; a < 3; a++) {
         RtFloats shift = rt_lanes_shift(thickness, org[a]);
         r.above[a] = org[a] + shift;
@@ -231,7 +231,7 @@ RT_KERNEL bool init_ray(RayState *f, const Query *q, size_t index, bool any, RtT
     f->prepared = false;
     if (q->tree->node_count == 0) return false;
     const int kz = rt_major_axis(ray->dir), kx = rt_next_axis(kz), ky = rt_next_axis(kx);
-    const bool is_near = rt_surface_is_near(ray->dir.at[kz]);
+    const bool is_near = rt_dir_is_ordinary(ray->dir.at[kz]);
     if (q->tree->split_refs && !is_near) {
         rt_test_all(q->geometry, state_ray(f, q), any, &f->best, tally);
         return false;

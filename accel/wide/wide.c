@@ -199,21 +199,12 @@ static void describe(const RtAccel *accel, RtDescription *out) {
     out->bytes = tree->bytes + self->trees[1].bytes;
 }
 
-static void show(const RtWideTree *self, RtWideRef ref, RtBox box, uint32_t depth, RtBoxViewer viewer) {
-    bool leaf = rt_wide_kind(ref) != RT_WIDE_NODE;
-    viewer.show(viewer.context, &(RtBoxView){.box = &box,
-                                             .depth = depth,
-                                             .leaf = leaf,
-                                             .objects = leaf ? rt_wide_count(self, ref) : 0});
-    if (leaf) return;
-    const RtWideNode *node = rt_wide_node(self, ref);
-    for (uint32_t i = 0; i < node->count; i++)
-        show(self, node->child[i], rt_wide_child_box(node, i), depth + 1, viewer);
-}
-
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
+    RT_ARENA(work);
     const RtWideTree *tree = &((const RtWide *)accel)->trees[0];
-    if (tree->node_count > 0) show(tree, root_of(tree), root_box(tree), 0, viewer);
+    RtHierarchy plain;
+    if (tree->node_count > 0 && flatten(tree, &work, &plain, NULL) == RT_OK)
+        rt_hierarchy_each_box(&plain, NULL, viewer);
 }
 
 /* ---- checking ---- */

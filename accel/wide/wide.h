@@ -93,7 +93,7 @@ typedef struct RtWideTree {
     char *arena;         /* [bytes] */
     uint64_t bytes;      /* 0 without objects */
     uint32_t node_count; /* 0 without objects */
-    bool split_refs;     /* objects may be in several leaves (accel/surface.h) */
+    bool split_refs;     /* objects may be in several leaves (accel/clipping.h) */
     double cost;         /* expected, in visits of nodes, for a random line through the root's box */
 } RtWideTree;
 

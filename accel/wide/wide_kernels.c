@@ -16,13 +16,7 @@
 
 /* Writes the answer of a ray. */
 RT_KERNEL void finish_ray(const Query *q, const RayState *f, bool any, bool counted) {
-    RtTally *tally = counted ? f->tally : NULL;
-    RT_COUNT(tally, rays, 1);
-    RT_COUNT(tally, hits, f->best.object != RT_NO_OBJECT);
-    if (any)
-        q->occluders[f->index] = f->best.object;
-    else
-        q->hits[f->index] = f->best;
+    rt_put_answer(&f->best, f->index, any, q->hits, q->occluders, counted ? f->tally : NULL);
 }
 
 /* ---- one ray after the other ---- */
@@ -257,12 +251,8 @@ RT_KERNEL void trace_many(const Query *q, bool any, bool counted) {
 
 RT_KERNEL void finish_packet(Packet *p, const Query *q, bool any) {
     test_pairs(p, q->tree, 1, any);
-    for (uint32_t i = 0; i < p->count; i++) {
-        if (any)
-            q->occluders[p->index[i]] = p->best[i].object;
-        else
-            q->hits[p->index[i]] = p->best[i];
-    }
+    for (uint32_t i = 0; i < p->count; i++)
+        rt_put_answer(&p->best[i], p->index[i], any, q->hits, q->occluders, NULL);
 }
 
 /* Traces the next rays of a query, about `count`. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally: the list of commands. */
 #include "accel/isa.h"
-#include "accel/remote.h"
+#include "accel/plugin.h"
 #include "cli/cli.h"
 #include "cli/jobs.h"
 #include "cli/plugins.h"

@@ -2,7 +2,7 @@
 #include "measure/measure.h"
 
 #include "accel/pass.h"
-#include "accel/remote.h"
+#include "accel/plugin.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"

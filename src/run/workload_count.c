@@ -2,7 +2,7 @@
 /* Counting: each candidate gets a share of the rays of one kind. Those that would exceed a limit are
  * excluded; the others are counted, their answers are compared with the expected ones, and distributions are
  * computed. */
-#include "accel/remote.h"
+#include "accel/plugin.h"
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"

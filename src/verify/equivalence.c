@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/equivalence.h"
 
-#include "accel/remote.h"
+#include "accel/plugin.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 

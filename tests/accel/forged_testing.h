@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A remote accelerator (accel/remote.h) whose process is forged: its answers are bytes of a test, which stand
+/* A remote accelerator (accel/plugin.h) whose process is forged: its answers are bytes of a test, which stand
  * for a plugin that overwrites the memory that it shares with raytally. The executable is linked with
  * --wrap for the five functions below; they are the real ones while nothing is forged. */
 #ifndef RT_TESTS_FORGED_TESTING_H
 #define RT_TESTS_FORGED_TESTING_H
 
+#include "accel/plugin.h"
 #include "accel/plugin/channel.h"
-#include "accel/remote.h"
 #include "core/base/process.h"
 
 #include <string.h>

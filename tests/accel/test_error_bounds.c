@@ -7,8 +7,8 @@
 #include "light_testing.h"
 #include "random_testing.h"
 
-#include "accel/extent.h"
 #include "accel/batch.h"
+#include "accel/extent.h"
 
 static const double within = 31.0 / 32, beyond = 33.0 / 32;
 

@@ -6,10 +6,10 @@
 #include "equivalence_testing.h"
 #include "random_testing.h"
 
+#include "accel/batch.h"
 #include "accel/brute/brute.h"
 #include "accel/extents/extents.h"
 #include "accel/kernel.h"
-#include "accel/batch.h"
 #include "accel/watertight.h"
 
 /* What is asked, and what is answered, timed and counted. */

@@ -2,8 +2,8 @@
 /* core/shape/overlap.h: boxes that the surface of an object meets, and grids that list objects by surface. */
 #include "equivalence_testing.h"
 
+#include "accel/clipping.h"
 #include "accel/grid/grid.h"
-#include "accel/surface.h"
 #include "accel/tree/tree.h"
 #include "core/shape/overlap.h"
 
@@ -149,7 +149,7 @@ RT_TEST(a_grid_leaves_out_voxels_inside_a_sphere) {
 /* Half a square, x >= y, that rises with x, and a ray past it: at org the line is beyond the slanted edge, by
  * the time it is as high as the triangle it has moved an eighth of that along x, and hits. Its dir is so
  * short that 1 / dir.x is infinite: to crossings it looks as if it stayed at x = 0.3, where voxels do not
- * list the triangle. accel/surface.h has such rays tested against every object. */
+ * list the triangle. accel/clipping.h has such rays tested against every object. */
 RT_TEST(a_ray_with_the_shortest_of_directions_is_not_trusted_to_voxels) {
     static const char *const specs[] = {"brute", "grid:resolution=32x32x32,overlap=exact"};
     const RtVec3 v[3] = {{0, 0, 0.5f}, {1, 0, 1.5f}, {1, 1, 1.5f}};
@@ -192,15 +192,15 @@ RT_TEST(a_voxel_lists_the_surfaces_within_the_margin) {
 
 RT_TEST(rays_from_outside_the_domain_are_not_served_on_any_side) {
     const RtBox scene = cube(3, 3, 3, 1);
-    const RtSurfaceRays served = rt_surface_rays(&scene, &scene);
+    const RtClippedRays served = rt_clipped_rays(&scene, &scene);
     RtPreparedRay ray = {.org = {3, 3, 3}, .dir = {0, 0, 1}, .kz = 2};
-    assert_true(rt_surface_serves(&served, &ray));
+    assert_true(rt_clipped_serves(&served, &ray));
     for (int a = 0; a < 3; a++) {
         for (int side = -1; side <= 1; side += 2) {
-            ray.org[a] = 3 + (float)side * (1 + 2 * RT_SURFACE_SIDES);
-            assert_true(rt_surface_serves(&served, &ray));
+            ray.org[a] = 3 + (float)side * (1 + 2 * RT_CLIPPED_SIDES);
+            assert_true(rt_clipped_serves(&served, &ray));
             ray.org[a] += (float)side;
-            assert_false(rt_surface_serves(&served, &ray));
+            assert_false(rt_clipped_serves(&served, &ray));
         }
         ray.org[a] = 3;
     }
@@ -208,8 +208,8 @@ RT_TEST(rays_from_outside_the_domain_are_not_served_on_any_side) {
 
 RT_TEST(the_margin_of_surfaces_covers_large_coordinates_and_the_least_numbers) {
     const RtBox far = {{{0x1p40f, 0, 0}}, {{0x1p40f, 0, 0}}}, point = {{{0, 0, 0}}, {{0, 0, 0}}};
-    assert_true(rt_surface_rays(&far, &far).margin >= within * 1);
-    assert_true(rt_surface_rays(&point, &point).margin >= within * 0x1p-80);
+    assert_true(rt_clipped_rays(&far, &far).margin >= within * 1);
+    assert_true(rt_clipped_rays(&point, &point).margin >= within * 0x1p-80);
 }
 
 /* Half a square, x >= y, cut at y = 0: its part begins at x = 0, less the margin by which the cut is late,

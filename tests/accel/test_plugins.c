@@ -6,7 +6,6 @@
 #include "equivalence_testing.h"
 
 #include "accel/plugin.h"
-#include "accel/remote.h"
 #include "core/base/clock.h"
 #include "measure/measure.h"
 #include "render/path.h"
@@ -476,11 +475,8 @@ static void crash_where_children_are(void (*handled)(int)) {
     close_stage(&stage);
 }
 
-RT_TEST(a_crash_is_reported_where_children_are_ignored) {
+RT_TEST(a_crash_is_reported_where_children_are_ignored_and_where_other_code_waits_for_them) {
     crash_where_children_are(SIG_IGN);
-}
-
-RT_TEST(a_crash_is_reported_where_other_code_waits_for_children) {
     crash_where_children_are(wait_for_all);
 }
 

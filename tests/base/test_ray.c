@@ -67,7 +67,7 @@ RT_TEST(a_ray_is_no_longer_in_an_own_box_than_in_one_around_it) {
     }
 }
 
-/* Point 3 of accel/surface.h proves 14 units; rounding the product back to t leaves a little more. The box
+/* Point 3 of accel/clipping.h proves 14 units; rounding the product back to t leaves a little more. The box
  * touches a point that is 14.75 units from the ray's along each axis: with 15/16 of the thickness this fails.
  */
 RT_TEST(a_ray_is_in_every_box_with_a_point_within_14_units_of_its_own) {

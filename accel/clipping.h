@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* For structures that list an object only in cells near its surface, not in all cells that its box meets: how
- * near is enough, and for which rays.
+/* Clipped objects, which a structure lists only in cells near their surfaces, not in all cells that their
+ * boxes meet: how near is enough, and for which rays.
  *
  * Let t be a hit on an object, p the ray's point there, org + t * dir in real numbers, and q the point of the
  * object's box nearest to p.
@@ -36,43 +36,43 @@
  * org') / dir is at least 2 units of distance before t. plane - org' and 1 / dir are rounded, by a unit each;
  * rounding the product cannot take it past t, a float32. The far plane likewise. 9 of the 14 units
  * suffice, by 2. CSG trees are cut like their boxes, so that q is in some part, and 1 applies. Scenes smaller
- * than RT_SURFACE_LEAST_SIDE, where t may be denormal, are not cut. */
-#ifndef RT_ACCEL_SURFACE_H
-#define RT_ACCEL_SURFACE_H
+ * than RT_CLIPPED_LEAST_SIDE, where t may be denormal, are not cut. */
+#ifndef RT_ACCEL_CLIPPING_H
+#define RT_ACCEL_CLIPPING_H
 
 #include "accel/kernel.h"
 
-#define RT_SURFACE_SIDES      8
-#define RT_SURFACE_LEAST_SIDE 0x1p-50
-#define RT_SURFACE_LEAST_DIR  0x1p-64f
-#define RT_SURFACE_MOST_DIR   0x1p64f
+#define RT_CLIPPED_SIDES      8
+#define RT_CLIPPED_LEAST_SIDE 0x1p-50
+#define RT_ORDINARY_LEAST_DIR 0x1p-64f
+#define RT_ORDINARY_MOST_DIR  0x1p64f
 
-typedef struct RtSurfaceRays {
+typedef struct RtClippedRays {
     RtBox domain;  /* of the origins of rays that cells of surfaces serve */
     double margin; /* a cell lists the surfaces within this distance */
-} RtSurfaceRays;
+} RtClippedRays;
 
 /* For a scene and a structure with these boxes; the second contains the first. */
-static inline RtSurfaceRays rt_surface_rays(const RtBox *scene, const RtBox *structure) {
-    RtSurfaceRays served;
+static inline RtClippedRays rt_clipped_rays(const RtBox *scene, const RtBox *structure) {
+    RtClippedRays served;
     double longest = rt_box_longest_side(*scene), largest = rt_box_largest_coordinate(*structure);
     for (int a = 0; a < 3; a++) {
-        served.domain.lo.at[a] = (float)((double)scene->lo.at[a] - RT_SURFACE_SIDES * longest);
-        served.domain.hi.at[a] = (float)((double)scene->hi.at[a] + RT_SURFACE_SIDES * longest);
+        served.domain.lo.at[a] = (float)((double)scene->lo.at[a] - RT_CLIPPED_SIDES * longest);
+        served.domain.hi.at[a] = (float)((double)scene->hi.at[a] + RT_CLIPPED_SIDES * longest);
     }
-    served.margin = 0x1p-18 * (RT_SURFACE_SIDES + 1) * longest + 0x1p-40 * largest + 0x1p-80;
+    served.margin = 0x1p-18 * (RT_CLIPPED_SIDES + 1) * longest + 0x1p-40 * largest + 0x1p-80;
     return served;
 }
 
 /* Whether float32 has enough exponents for a ray whose longest component of dir is this, so that its hits are
  * near surfaces. */
-RT_KERNEL bool rt_surface_is_near(float longest) {
-    return fabsf(longest) >= RT_SURFACE_LEAST_DIR && fabsf(longest) <= RT_SURFACE_MOST_DIR;
+RT_KERNEL bool rt_dir_is_ordinary(float longest) {
+    return fabsf(longest) >= RT_ORDINARY_LEAST_DIR && fabsf(longest) <= RT_ORDINARY_MOST_DIR;
 }
 
 /* Whether cells that list surfaces serve this ray. */
-RT_KERNEL bool rt_surface_serves(const RtSurfaceRays *served, const RtPreparedRay *ray) {
-    bool inside = rt_surface_is_near(ray->dir[ray->kz]);
+RT_KERNEL bool rt_clipped_serves(const RtClippedRays *served, const RtPreparedRay *ray) {
+    bool inside = rt_dir_is_ordinary(ray->dir[ray->kz]);
     for (int a = 0; a < 3; a++) {
         float org = ray->org[a];
         inside &= org >= served->domain.lo.at[a] && org <= served->domain.hi.at[a];
