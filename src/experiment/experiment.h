@@ -154,7 +154,7 @@ typedef struct RtExperiment {
                                     ones; or "" */
     bool count_only;             /* nothing is timed */
     bool render;                 /* frames are rendered, too */
-    bool distributions;          /* of counts over rays, and of leaves (measure/distribution.h) */
+    bool distributions;          /* of counts over rays, and of leaves (measure/statistics.h) */
     bool quick;                  /* the smaller variant, for a first look */
     char path[RT_MAX_PATH];      /* of the YAML, or "" */
     RtError warning;             /* about the YAML, for the user; or "" */
