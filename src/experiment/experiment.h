@@ -150,7 +150,7 @@ typedef struct RtExperiment {
               [RT_MAX_WORD]; /* gnuplot scripts relative to the YAML, run in this order in one process */
     uint32_t plot_count;
     RtFrameSetup frame;
-    char rays_from[RT_MAX_PATH]; /* a file of rays (measure/ray_file.h) of the one kind, in place of recorded
+    char rays_from[RT_MAX_PATH]; /* a file of rays (measure/ray_file.c) of the one kind, in place of recorded
                                     ones; or "" */
     bool count_only;             /* nothing is timed */
     bool render;                 /* frames are rendered, too */

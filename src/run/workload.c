@@ -2,7 +2,7 @@
 /* A workload in order: record, build, and for each kind of rays count and time. */
 #include "core/base/memory.h"
 #include "core/base/words.h"
-#include "measure/ray_file.h"
+#include "measure/measure.h"
 #include "run/workload_state.h"
 #include "scenes/open.h"
 
