@@ -3,7 +3,7 @@
 #include "cli/cli.h"
 #include "cli/experiment_options.h"
 #include "core/base/words.h"
-#include "measure/ray_file.h"
+#include "measure/measure.h"
 #include "run/workload.h"
 
 #include <inttypes.h>

@@ -9,7 +9,7 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "measure/ray_file.h"
+#include "measure/measure.h"
 #include "scenes/builtin.h"
 #include "scenes/open.h"
 #include "verify/replay.h"

@@ -150,11 +150,11 @@ typedef struct RtExperiment {
               [RT_MAX_WORD]; /* gnuplot scripts relative to the YAML, run in this order in one process */
     uint32_t plot_count;
     RtFrameSetup frame;
-    char rays_from[RT_MAX_PATH]; /* a file of rays (measure/ray_file.h) of the one kind, in place of recorded
+    char rays_from[RT_MAX_PATH]; /* a file of rays (measure/ray_file.c) of the one kind, in place of recorded
                                     ones; or "" */
     bool count_only;             /* nothing is timed */
     bool render;                 /* frames are rendered, too */
-    bool distributions;          /* of counts over rays, and of leaves (measure/distribution.h) */
+    bool distributions;          /* of counts over rays, and of leaves (measure/statistics.h) */
     bool quick;                  /* the smaller variant, for a first look */
     char path[RT_MAX_PATH];      /* of the YAML, or "" */
     RtError warning;             /* about the YAML, for the user; or "" */

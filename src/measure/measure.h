@@ -7,6 +7,8 @@
 #include "measure/statistics.h"
 #include "rays/rayset.h"
 
+#include <stdio.h>
+
 /* ---- counting ---- */
 
 /* Writes the right answers to hits[0..set->count), by the timed kernel of an exact accelerator. */
@@ -42,7 +44,7 @@ RtStatus rt_measure_rows(const RtAccel *accel, const RtRaySet *set, int threads,
                          RtError *error);
 void rt_rows_clear(RtRows *rows);
 
-/* ---- rounds ---- */
+/* ---- rounds (rounds.c) ---- */
 
 /* Interleaved rounds: timing several runners against each other. After a warm-up, each round runs all of them
  * once, in a new random order, so that drift of the machine affects all alike and the times of one round can
@@ -124,5 +126,27 @@ void rt_runner_close(RtRunner *runner);
 /* Times timed[0..count) in interleaved rounds, *done of them. */
 RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
                          RtError *error);
+
+/* ---- files (ray_file.c) ---- */
+
+/* Ray sets as NumPy arrays (.npy): rays may come from any other renderer, and answers and counts may go to
+ * any other program. docs/guide/own-rays.md describes the files. */
+
+/* Floats per row: origin, tmin, direction, tmax. */
+#define RT_RAY_COLUMNS 8
+
+/* Writes the rays, whole or not at all: float32, one row each. */
+RtStatus rt_rays_save(const RtRaySet *set, const char *path, RtError *error);
+
+/* Reads rays; they get the kind `kind` and source 0. Rejects an empty file, and an invalid ray
+ * (rt_ray_is_valid) by its row. Free with rt_rayset_clear. */
+RtStatus rt_rays_load(const char *path, RtRayKind kind, RtRaySet *set, RtError *error);
+
+/* Writes an array of the hit of each ray: fields t (float32; inf for a miss) and object (int64; -1 for a
+ * miss); for any-hit kinds, an array of bool. */
+void rt_hits_put(const RtRows *rows, FILE *out);
+
+/* Writes an array of the cost of each ray: a field of uint64 for each counter. */
+void rt_counts_put(const RtRows *rows, FILE *out);
 
 #endif

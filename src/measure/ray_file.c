@@ -3,7 +3,7 @@
  * text (NumPy Enhancement Proposal 1); then the numbers follow as they lie in memory. Input is not trusted:
  * the version must be 1.0, 2.0 or 3.0, the dictionary must have exactly the three keys of the format, and the
  * file must be as long as it says. */
-#include "measure/ray_file.h"
+#include "measure/measure.h"
 
 #include "core/base/file.h"
 #include "core/base/memory.h"

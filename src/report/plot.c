@@ -545,13 +545,13 @@ static RtStatus draw_all(Drawing *drawing, RtScripts allowed, RtError *error) {
 
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtScripts allowed, bool column,
                        RtError *error) {
-    Drawing *drawing = rt_alloc(1, sizeof *drawing);
-    if (!drawing) return rt_fail_memory(error, "plots", sizeof *drawing);
+    RT_ARENA(arena);
+    Drawing *drawing = rt_arena_alloc(&arena, 1, sizeof *drawing);
+    RT_TRY(rt_arena_check(&arena, "plots", error));
     *drawing = (Drawing){.results = results, .directory = directory, .column = column};
     RtStatus status = draw_all(drawing, allowed, error);
     rt_free(drawing->sweeps.data);
     rt_free(drawing->axes.data);
-    rt_free(drawing);
     return status;
 }
 

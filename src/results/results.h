@@ -8,7 +8,6 @@
 #include "core/text/json.h"
 #include "core/text/table.h"
 #include "experiment/experiment.h"
-#include "measure/distribution.h"
 #include "measure/machine.h"
 #include "measure/statistics.h"
 

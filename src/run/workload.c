@@ -3,7 +3,6 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/words.h"
-#include "measure/ray_file.h"
 #include "measure/measure.h"
 #include "render/frame.h"
 #include "run/workload_state.h"

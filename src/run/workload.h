@@ -25,7 +25,7 @@ typedef struct RtWorkloadOptions {
     double until;    /* rounds continue until all intervals of ratios are within this part of their medians:
                         0.01; 0: as many rounds as in the experiment */
     double patience; /* most seconds of that for a kind of rays on a scene */
-    /* FILE.npy, which gets the hit and the cost of each ray (measure/ray_file.h); or NULL. If the experiment
+    /* FILE.npy, which gets the hit and the cost of each ray (measure/ray_file.c); or NULL. If the experiment
      * has several cells, FILE-NAME.npy for each, with the names of scene, accelerator and kind of rays of
      * which there are several. */
     const char *hits, *counts;

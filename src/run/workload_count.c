@@ -6,7 +6,7 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
-#include "measure/ray_file.h"
+#include "measure/measure.h"
 #include "run/workload_state.h"
 
 #include <inttypes.h>

@@ -3,7 +3,7 @@
 #include "experiment_testing.h"
 
 #include "core/text/json.h"
-#include "measure/ray_file.h"
+#include "measure/measure.h"
 
 #include <sys/stat.h>
 

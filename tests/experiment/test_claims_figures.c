@@ -212,15 +212,6 @@ RT_TEST(the_smallest_and_the_largest_of_many_figures_are_of_those_that_are_known
     set_up_primary(NULL);
 }
 
-RT_TEST(an_accelerator_is_as_fast_as_itself_and_does_not_cross_itself) {
-    set_curves(200, 200, 200);
-    expect(RT_CLAIM_HOLDS, "ratio of time of all to bvh on random:n=10 >= 1", "1.00 (bvh on random:n=10)");
-    for (uint32_t t = 0; t < 3; t++) {
-        for (uint32_t c = 2; c < 4; c++) set(t, c, 200, 200, 200);
-    }
-    expect(RT_CLAIM_HOLDS, "crossover of object_tests of all and bvh in n > 199", "n=200");
-}
-
 RT_TEST(an_unknown_value_between_others_may_hide_a_crossover_and_one_at_the_end_shortens_the_range) {
     set_curves(20, 20, 20);
     *rt_cell_at(&results, 2, 1, RT_RAY_PRIMARY) = (RtCell){0};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* measure/distribution.h: bins, percentiles, JSON; and that what is distributed is what was counted. */
+/* measure/statistics.h: bins, percentiles, JSON; and that what is distributed is what was counted. */
 #include "testing.h"
 
 #include "core/base/random.h"

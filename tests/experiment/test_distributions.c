@@ -66,13 +66,6 @@ PLACE_TEST(files_that_are_named_after_scenes_have_portable_names_of_their_own) {
     assert_in_file(place, "out/report.html", "plots/histograms-N-50-X-2.pdf");
 }
 
-PLACE_TEST(a_run_that_does_not_ask_has_neither_tables_nor_plots_of_them) {
-    write_changed(place, "small.yaml", spread, "distributions: yes", "distributions: no");
-    assert_runs(place, "run small.yaml --out out --threads 1");
-    assert_false(rt_file_exists(path_in(place, "out/distributions.csv").text));
-    assert_false(rt_file_exists(path_in(place, "out/plots/histograms.gp").text));
-}
-
 /* On one thread and on two, and counted without them before: the journal of a shard has all that is needed.
  */
 PLACE_TEST(distributions_are_the_same_bytes_on_two_threads_in_parts_and_in_shards) {

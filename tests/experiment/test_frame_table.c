@@ -157,16 +157,6 @@ FRAME_TEST(where_nothing_is_timed_object_tests_decide) {
            "with 30.0 times. light+wide needs 3.00 times fewer object tests than wide alone.");
 }
 
-FRAME_TEST(a_thinned_set_is_told_as_a_part_of_a_frame) {
-    char text[RT_MAX_FRAME_TEXT];
-    rt_frame_title(&results, 0, text);
-    assert_string_equal(text, "0 objects, a frame of 10x10: 100 primary, 300 shadow and 100 secondary rays; "
-                              "of the measured part");
-    results.workloads[0].rays[RT_RAY_PRIMARY] = 50;
-    rt_frame_title(&results, 0, text);
-    assert_non_null(strstr(text, "a part of a frame of 10x10: 50 primary"));
-}
-
 /* 100 primary, 900 of 2700 shadow and 100 reflection rays. */
 FRAME_TEST(a_frame_weighs_each_kind_of_ray_by_its_whole_set) {
     RtFrameRow row = {.results = &results};

@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "core/scene/load.h"
 #include "core/scene/yaml.h"
-#include "measure/ray_file.h"
+#include "measure/measure.h"
 #include "verify/ray_families.h"
 #include "verify/replay.h"
 #include "verify/spread.h"

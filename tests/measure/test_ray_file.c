@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* measure/ray_file.h: arrays of rays as NumPy writes them, and files that are invalid or of other types. */
+/* measure/measure.h: arrays of rays as NumPy writes them, and files that are invalid or of other types. */
 #include "experiment_testing.h"
 
-#include "measure/ray_file.h"
+#include "measure/measure.h"
 
 #include <fcntl.h>
 

@@ -2,7 +2,7 @@
 /* Ray sets: the same on any number of threads, every ray valid, of its kind and where it should be. */
 #include "accel_testing.h"
 
-#include "measure/ray_file.h"
+#include "measure/measure.h"
 #include "rays/rayset.h"
 
 #include <malloc.h>

@@ -361,12 +361,4 @@ RT_TEST(the_map_around_a_light_shows_the_cell_that_a_shadow_ray_is_looked_up_in)
     assert_true(found > 1000);
 }
 
-RT_TEST(an_accelerator_without_cells_around_lights_has_no_map) {
-    OWNED_SCENE scene = open_busy();
-    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "item+grid");
-    OWNED_BYTES bytes = {0};
-    rt_explore_cells(accel, &bytes);
-    assert_int_equal(bytes.count, 0);
-}
-
 RT_TESTS(explore, NULL, assert_nothing_is_kept)
