@@ -256,24 +256,4 @@ RT_TEST(the_files_that_are_kept_have_these_columns) {
     }
 }
 
-/* A new counter has a column in each of these but the times, a new prediction or quality in each. */
-RT_TEST(every_counter_prediction_and_quality_is_in_counts_times_and_bench) {
-    static const RtResultTable all[] = {RT_COUNTS, RT_BENCH, RT_TIMES};
-    for (size_t i = 0; i < 3; i++) {
-        char *text;
-        size_t size;
-        FILE *out = open_memstream(&text, &size);
-        RtTable table = of_results(all[i]);
-        rt_table_csv(&table, out);
-        fclose(out);
-#define IN_TABLE(name, meaning) assert_non_null(strstr(text, #name));
-        if (all[i] != RT_TIMES) {
-            RT_TALLY_COUNTERS(IN_TABLE)
-        }
-        RT_PREDICTIONS(IN_TABLE)
-        RT_QUALITIES(IN_TABLE)
-        free(text);
-    }
-}
-
 RT_TESTS(columns, NULL, NULL)
