@@ -201,8 +201,7 @@ static RtStatus check_label(const char *label, RtError *error) {
 static RtStatus fail_twice(const char *label, RtError *error) {
     return rt_fail(
         error, RT_BAD_INPUT,
-        "the label '%s' is used twice: leave one out, or, in an experiment, give one of them another "
-        "`label`",
+        "the label '%s' is used twice: leave one out, or, in an experiment, give one of them another `label`",
         label);
 }
 
