@@ -9,7 +9,7 @@
 #define RT_RESULTS_JOURNAL_H
 
 #include "core/text/json_lines.h"
-#include "experiment/selection.h"
+#include "experiment/experiment.h"
 #include "results/events.h"
 
 /* Opens the journal at `path` for appending: with `resume` the existing one, else a new one, which records
