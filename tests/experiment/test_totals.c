@@ -125,14 +125,4 @@ PLACE_TEST(whole_sets_are_in_the_manifest_and_in_the_names_for_plots_but_not_in_
     assert_in_file(place, "sets", "gears:size=2/primary=4096 ");
 }
 
-PLACE_TEST(the_end_of_a_run_and_a_benchmark_say_how_many_rays_of_how_many_were_measured) {
-    write_changed(place, "small.yaml", small_experiment, "frame: {without: brute, among: all}\n", "");
-    assert_runs(place, "run small.yaml --quick --out out");
-    assert_in_file(place, "output", "seed 1; of ");
-    assert_in_file(place, "output", " measured\n");
-    assert_runs(place, "bench balls --accel bvh --accel grid --rays primary,shadow "
-                       "--size 32x32 --depth 1 --limit 500 --rounds 2");
-    assert_in_file(place, "output", "Break-evens are over all kinds of rays together: of ");
-}
-
 RT_TESTS(totals, NULL, NULL)

@@ -22,7 +22,6 @@ static RtScene five_balls(void) {
     assert_ok(rt_scene_finish(&scene, error));
     assert_ok(rt_scene_sample(&scene, SIDE, SIDE, 1, false, error));
     return scene;
-    return scene;
 }
 
 /* The picture of a structure over a frame of it. */
