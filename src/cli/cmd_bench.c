@@ -91,8 +91,7 @@ static const RtOption options[] = {
      "Measure the preceding --accel on every Kth ray only, for slow accelerators"},
     {"baseline", 0, "SPEC", RT_TO_TEXT(baseline),
      "The accelerator that ratios are relative to (default: the first that is not a plugin). NAME:best is "
-     "the "
-     "fastest of several settings for each kind of rays, as in embree:best (`raytally accels NAME`)"},
+     "the fastest of several settings for each kind of rays, as in embree:best (`raytally accels NAME`)"},
     {"milliseconds", 0, "N", RT_TO_INTEGER(shared.experiment.milliseconds, 0, RT_MAX_MILLISECONDS),
      "Repeat a short set of rays within a round until N milliseconds have passed (20); 0: run it once"},
     {"rounds", 0, "N", RT_TO_INTEGER(shared.experiment.rounds, 1, RT_MAX_ROUNDS),

@@ -62,9 +62,9 @@ const RtSyntax rt_merge_syntax = {
         "Join the shards of a run (`raytally run --shard I/N`) into one result directory, with its tables, "
         "plots and report. counts.csv is the same, byte for byte, as after a run on one machine. times.csv "
         "names the machine that timed each row; one machine times all accelerators on a scene.\v"
-        "Every shard must be finish_mergeed and given once, and all must agree in experiment, build and "
-        "number of "
-        "--threads. Use the same build, in the directory in which the shards were started. Example:\n"
+        "Every shard must be finished and given once, and all must agree in experiment, build and "
+        "number of --threads. Use the same build, in the directory in which the shards were started. "
+        "Example:\n"
         "  raytally merge results/first-look-*-of-3 -o results/first-look"};
 
 RtStatus rt_command_merge(int argc, char **argv, RtError *error) {

@@ -20,6 +20,8 @@
 #include <string.h>
 #include <unistd.h>
 
+enum { MOST_OUTPUTS = RT_TALLY_COUNTER_COUNT + 3 };
+
 typedef struct Options {
     const char *scene;
     const char *accels[RT_MAX_PANELS]; /* the first makes the image; all are counted for heatmaps */
@@ -40,53 +42,36 @@ typedef struct Options {
     /* The name of the last given option, or NULL, that needs a picture of boxes, a picture of a light's
      * cells, or --heatmap. */
     const char *of_boxes, *of_light, *thermal;
+    const char *outputs[MOST_OUTPUTS]; /* the files to be written; by finish */
+    uint32_t output_count, heatmap_count;
 } Options;
-
-enum { MOST_OUTPUTS = RT_TALLY_COUNTER_COUNT + 4 };
-
-/* Lists the files to be written; returns their number. */
-static size_t list_outputs(const Options *o, const char *paths[MOST_OUTPUTS]) {
-    const char *const others[] = {o->png, o->stats, o->structure};
-    size_t count = 0;
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-        if (others[i]) paths[count++] = others[i];
-    }
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
-        if (o->heatmaps[i]) paths[count++] = o->heatmaps[i];
-    }
-    return count;
-}
-
-static bool any_heatmap(const Options *o) {
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
-        if (o->heatmaps[i]) return true;
-    }
-    return false;
-}
 
 static void finish(void *options, struct argp_state *state) {
     Options *o = options;
-    const char *paths[MOST_OUTPUTS];
-    size_t count = list_outputs(o, paths);
-    if (o->accel_count == 0) o->accels[o->accel_count++] = rt_accel_default();
-    if (count == 0 && !o->check) {
-        argp_error(state, "nothing to do: give -o FILE.png, or --heatmap, --structure, --stats or --check");
+    const char *const others[] = {o->png, o->stats, o->structure};
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+        if (others[i]) o->outputs[o->output_count++] = others[i];
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        o->heatmap_count += o->heatmaps[i] != NULL;
+        if (o->heatmaps[i]) o->outputs[o->output_count++] = o->heatmaps[i];
     }
-    for (size_t i = 0; i < count; i++) {
-        for (size_t k = 0; k < i; k++) {
-            if (strcmp(paths[k], paths[i]) != 0) continue;
-            argp_error(state, "'%s' would be written twice: give each output its own file", paths[i]);
+    if (o->accel_count == 0) o->accels[o->accel_count++] = rt_accel_default();
+    if (o->output_count == 0 && !o->check)
+        argp_error(state, "nothing to do: give -o FILE.png, or --heatmap, --structure, --stats or --check");
+    for (uint32_t i = 0; i < o->output_count; i++) {
+        for (uint32_t k = 0; k < i; k++) {
+            if (strcmp(o->outputs[k], o->outputs[i]) != 0) continue;
+            argp_error(state, "'%s' would be written twice: give each output its own file", o->outputs[i]);
         }
     }
-    const bool heats = any_heatmap(o);
     const char *structural = o->layer ? "layer" : o->of_boxes ? o->of_boxes : o->of_light;
     if (structural && !o->structure)
         argp_error(state, "--%s needs a picture of a structure: --structure FILE.png", structural);
-    if (o->thermal && !heats)
+    if (o->thermal && !o->heatmap_count)
         argp_error(state, "--%s needs a heatmap: --heatmap COUNTER FILE.png", o->thermal);
     if (o->heat.difference && o->accel_count != 2)
         argp_error(state, "--heatmap-difference needs two accelerators: give --accel twice");
-    if (o->accel_count > 1 && !heats)
+    if (o->accel_count > 1 && !o->heatmap_count)
         argp_error(state, "only --heatmap takes several accelerators: give one --accel");
 }
 
@@ -284,8 +269,7 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     *f = (RtFrameOptions){.depth = o->depth, .threads = o->threads};
     if (isatty(STDERR_FILENO)) f->progress = show_progress;
     f->progress_context = "tracing";
-    const char *paths[MOST_OUTPUTS];
-    bool alone = o->structure && list_outputs(o, paths) == 1 && !o->check;
+    bool alone = o->structure && o->output_count == 1 && !o->check;
     if (alone && run->layer->ops->find_cell) return RT_OK; /* cells are drawn without an image */
     run->by_default = alone && run->accel->exact;
     if (run->by_default) { /* the same image bit for bit */
@@ -296,7 +280,7 @@ static RtStatus trace_frames(Run *run, RtError *error) {
         return status;
     }
     RT_TRY(rt_frame_trace(&run->timed, run->accel, f, error));
-    if (!o->stats && !any_heatmap(o)) return RT_OK;
+    if (!o->stats && !o->heatmap_count) return RT_OK;
     f->progress_context = "counting";
     f->counted = true;
     f->cost_kinds = o->kinds;
@@ -332,24 +316,21 @@ static RtStatus prepare(Run *run, RtError *error) {
 
 /* ---- what is written ---- */
 
-static RtStatus draw_cells(const Options *o, const RtAccel *accel, const RtAccel *layer, RtError *error) {
-    RtRay ray;
-    const RtSampling *s = &accel->scene->sampling;
-    if (o->pixel.given) RT_TRY(rt_cli_check_pixel(s, o->pixel, error));
-    if (o->pixel.given && o->light < accel->scene->light_count) {
-        RtFootprint f = rt_pixel_footprint(s, o->pixel.x, o->pixel.y);
-        RT_TRY(rt_path_ray(accel, RT_RAY_SHADOW, f.column + f.span / 2, f.row + f.span / 2, o->light, &ray,
-                           error));
-    }
-    return rt_buffer_draw(o->structure, layer, o->light, o->pixel.given ? &ray : NULL, error);
-}
-
 static RtStatus draw_structure(const Run *run, RtError *error) {
     const Options *o = run->options;
+    const RtSampling *s = &run->scene.sampling;
     RtStructureOptions boxes = o->boxes;
-    if (run->layer->ops->find_cell) return draw_cells(o, run->accel, run->layer, error);
+    RtRay ray;
     if (o->in_middle) boxes.at = (double)rt_box_center(run->scene.geometry.box).at[boxes.axis];
-    return rt_structure_draw(o->structure, run->layer, &run->timed, &boxes, error);
+    if (!run->layer->ops->find_cell)
+        return rt_structure_draw(o->structure, run->layer, &run->timed, &boxes, error);
+    if (o->pixel.given) RT_TRY(rt_cli_check_pixel(s, o->pixel, error));
+    if (o->pixel.given && o->light < run->scene.light_count) {
+        RtFootprint f = rt_pixel_footprint(s, o->pixel.x, o->pixel.y);
+        RT_TRY(rt_path_ray(run->accel, RT_RAY_SHADOW, f.column + f.span / 2, f.row + f.span / 2, o->light,
+                           &ray, error));
+    }
+    return rt_buffer_draw(o->structure, run->layer, o->light, o->pixel.given ? &ray : NULL, error);
 }
 
 static RtStatus write_heatmaps(const Run *run, RtError *error) {
@@ -457,10 +438,8 @@ static void print_summary(const Run *run) {
         print_rays(run);
     else
         printf(", not traced: the picture shows only cells.");
-    const char *written[MOST_OUTPUTS];
-    size_t count = list_outputs(o, written);
-    for (size_t i = 0; i < count; i++) printf("%s%s", i ? ", " : " Wrote ", written[i]);
-    puts(count ? "." : "");
+    for (uint32_t i = 0; i < o->output_count; i++) printf("%s%s", i ? ", " : " Wrote ", o->outputs[i]);
+    puts(o->output_count ? "." : "");
     for (uint32_t i = 0; o->accel_count > 1 && i < o->accel_count; i++)
         print_counts(run, o->accels[i], &run->built[i].counted);
 }
@@ -548,7 +527,7 @@ RtStatus rt_command_render(int argc, char **argv, RtError *error) {
     if (status == RT_OK) status = trace_frames(&run, error);
     if (status == RT_OK && o.png) status = rt_png_write(&run.timed, o.png, error);
     if (status == RT_OK && o.structure) status = draw_structure(&run, error);
-    if (status == RT_OK && any_heatmap(&o)) status = write_heatmaps(&run, error);
+    if (status == RT_OK && o.heatmap_count) status = write_heatmaps(&run, error);
     if (status == RT_OK && o.stats) status = rt_json_save(o.stats, stats_json(&run), error);
     if (status == RT_OK) print_summary(&run);
     if (status == RT_OK && o.check) status = check_rays(&run, error);

@@ -204,8 +204,7 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
 
 static const RtOption options[] = {
     {"only", 0, "SCENE", RT_TO_TEXT(scene),
-     "Count and compare only the rows of one scene, or of a sweep of scenes, "
-     "by its label"},
+     "Count and compare only the rows of one scene, or of a sweep of scenes, by its label"},
     {"quick", 0, NULL, RT_TO_FLAG(quick), "The same for the cheapest scene of each directory"},
     RT_LIMIT_OPTIONS,
     {0}};

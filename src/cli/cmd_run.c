@@ -296,17 +296,16 @@ const RtSyntax rt_run_syntax = {
     .finish = finish_options,
     .help =
         "Run an experiment and write its result directory: counts.csv, times.csv, manifest.json, plots, "
-        "images and report.html. Several run one after the other, each in a separate process; one that "
-        "fails does not stop the others, the worst exit code counts, and an index lists all results in the "
-        "folder. Given a manifest, run its experiment again; start it in the same working directory as the "
-        "first run. A directory that has results, finished or not, needs --resume or --force. "
-        "Only one process at a time may write to a directory. After Ctrl-C, finished cells are kept.\v"
+        "images and report.html. Several run one after the other, each in a separate process; one that fails "
+        "does not stop the others, the worst exit code counts, and an index lists all results in the folder. "
+        "Given a manifest, run its experiment again; start it in the same working directory as the first "
+        "run. A directory that has results, finished or not, needs --resume or --force. Only one process at "
+        "a time may write to a directory. After Ctrl-C, finished cells are kept.\v"
         "Times per ray are in ns/ray, over all kinds of rays, on one thread unless --threads says otherwise; "
-        "`raytally bench` prints them by kind, as throughput: Mrays/s = 1000 / (ns/ray).\n"
-        "\n"
+        "`raytally bench` prints them by kind, as throughput: Mrays/s = 1000 / (ns/ray).\n\n"
         "Exit code 1 if an accelerator returns a wrong answer, gnuplot fails (without gnuplot there is a "
-        "note), or with --strict a claim does not hold. "
-        "experiments/README.md describes how to write an experiment."};
+        "note), or with --strict a claim does not hold. experiments/README.md describes how to write an "
+        "experiment."};
 
 RtStatus rt_command_run(int argc, char **argv, RtError *error) {
     Options o = {.threads = -1,

@@ -255,9 +255,9 @@ static void on_doing(void *context, const RtVerifyProgress *p) {
     fprintf(stderr, "\r\033[Kverify: scene %u of %u, %s: %s", p->scene + 1, work->scene_count,
             work->scenes[p->scene], p->what);
     if (p->done > 0 && passed > 0) {
-        double rate = (double)p->done / passed, left = (double)(p->all - p->done) / rate;
-        fprintf(stderr, ", %.3g Mrays/s, about %.0f %s left", 1e-6 * rate, left < 120 ? left : left / 60,
-                left < 120 ? "s" : "min");
+        char left[RT_MAX_DURATION];
+        rt_format_duration(passed * (double)(p->all - p->done) / (double)p->done, left);
+        fprintf(stderr, ", about %s left", left);
     }
     fflush(stderr);
 }
@@ -342,20 +342,6 @@ static void print_judged(const RtVerifySum *sum) {
     putchar('\n');
 }
 
-static void print_count(uint64_t count, const char *what) {
-    printf("%" PRIu64 " %s%s, ", count, what, rt_plural(count));
-}
-
-/* The number of failed rows by accelerator. */
-static void print_failed(const RtVerifySum *sums, uint32_t count) {
-    const char *between = "; rows that fail: ";
-    for (uint32_t i = 0; i < count; i++) {
-        if (sums[i].failed == 0) continue;
-        printf("%s%u of %s", between, sums[i].failed, sums[i].name);
-        between = ", ";
-    }
-}
-
 /* The wrong answers of the accelerators that are exact, or of the others. */
 static void print_wrong(const RtVerifySum *sums, uint32_t count, bool exact) {
     uint64_t wrong = 0, occluded_wrong = 0, undecided = 0, failed = 0;
@@ -376,47 +362,39 @@ static void print_wrong(const RtVerifySum *sums, uint32_t count, bool exact) {
 
 static void print_total(const Options *o, const json_t *rows, const RtVerifySum *sums, uint32_t count) {
     RtVerifySum total = rt_verify_total(rows);
-    print_count(o->work.scene_count, "scene");
-    print_count(o->work.spec_count, "accelerator");
-    print_count(o->work.rays.count, "ray");
-    printf("%" PRIu64 " comparison%s: ", total.pairs, rt_plural(total.pairs));
+    const RtVerify *work = &o->work;
+    printf("%u scene%s, %u accelerator%s, %" PRIu64 " ray%s, %" PRIu64 " comparison%s: ", work->scene_count,
+           rt_plural(work->scene_count), work->spec_count, rt_plural(work->spec_count), work->rays.count,
+           rt_plural(work->rays.count), total.pairs, rt_plural(total.pairs));
     const uint64_t exact = total.pairs - total.judged;
     if (exact > 0 && total.judged > 0) printf("%" PRIu64 " bit for bit, ", exact);
     if (exact > 0 || total.judged == 0) print_wrong(sums, count, true);
     if (exact > 0 && total.judged > 0) printf("; %" PRIu64 " ", total.judged);
     if (total.judged > 0) fputs("by verdicts, ", stdout);
     if (total.judged > 0) print_wrong(sums, count, false);
-    print_failed(sums, count);
+    const char *between = "; rows that fail: ";
+    for (uint32_t i = 0; i < count; i++) {
+        if (sums[i].failed == 0) continue;
+        printf("%s%u of %s", between, sums[i].failed, sums[i].name);
+        between = ", ";
+    }
     if (total.refused > 0) printf("; %u row%s refused", total.refused, rt_plural(total.refused));
     putchar('\n');
 }
 
-static void print_left_out(const Options *o) {
-    printf("--quick used %" PRIu64 " ray%s per scene instead of %d", o->work.rays.count,
-           rt_plural(o->work.rays.count), MANY_RAYS);
-    if (o->left_out > 0) printf(", and left out %u larger scene%s", o->left_out, rt_plural(o->left_out));
-    puts(". Omit it for the full check.");
-}
-
 static RtStatus print_totals(const Options *o, const json_t *rows, RtError *error) {
+    const uint64_t rays = o->work.rays.count;
     RtVerifySum *sums;
     uint32_t count;
     RtStatus status = rt_verify_sums(rows, RT_BY_ACCEL, &sums, &count, error);
     for (uint32_t i = 0; i < count; i++) print_judged(&sums[i]);
-    if (status == RT_OK) {
-        print_total(o, rows, sums, count);
-        if (o->quick) print_left_out(o);
-    }
+    if (status == RT_OK) print_total(o, rows, sums, count);
     rt_free(sums);
-    return status;
-}
-
-/* Refused rows are results, unless there are no others. */
-static RtStatus check_refused(const json_t *rows, RtError *error) {
-    const RtVerifySum total = rt_verify_total(rows);
-    if (total.rows == 0 || total.refused < total.rows) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "nothing was verified: every accelerator refuses the scene: %s",
-                   rt_json_text(json_array_get(rows, 0), "refused", ""));
+    if (status != RT_OK || !o->quick) return status;
+    printf("--quick used %" PRIu64 " ray%s per scene instead of %d", rays, rt_plural(rays), MANY_RAYS);
+    if (o->left_out > 0) printf(", and left out %u larger scene%s", o->left_out, rt_plural(o->left_out));
+    puts(". Omit it for the full check.");
+    return RT_OK;
 }
 
 static RtStatus verify(const Options *o, bool *failed, RtError *error) {
@@ -429,7 +407,10 @@ static RtStatus verify(const Options *o, bool *failed, RtError *error) {
         rt_cli_print_json(json_pack("{s:I, s:O}", "seed", (json_int_t)o->work.rays.seed, "rows", rows));
     }
     if (status == RT_OK && !o->json) status = print_totals(o, rows, error);
-    if (status == RT_OK) status = check_refused(rows, error);
+    const RtVerifySum total = status == RT_OK ? rt_verify_total(rows) : (RtVerifySum){0};
+    if (total.rows > 0 && total.refused == total.rows) /* refused rows are results, if there are others */
+        status = rt_fail(error, RT_BAD_INPUT, "nothing was verified: every accelerator refuses the scene: %s",
+                         rt_json_text(json_array_get(rows, 0), "refused", ""));
     json_decref(rows);
     *failed = show.failed;
     return status;
@@ -484,19 +465,17 @@ const RtSyntax rt_verify_syntax = {
     .argument = {.name = "SCENE", .value = RT_TO_LIST(given, given_count)},
     .finish = finish,
     .help =
-        "Verify that each accelerator hits the same object as brute, with the same bits of t, for every "
-        "ray of each SCENE, in the timed and the counted kernel, ray by ray and in streams. The default "
-        "is some fifty small scenes that are hard for accelerators. SCENE may be `triangles`, those that "
-        "consist of triangles only; `families`, those generated from a seed; or one of these, as in "
+        "Verify that each accelerator hits the same object as brute, with the same bits of t, for every ray "
+        "of each SCENE, in the timed and the counted kernel, ray by ray and in streams. The default is some "
+        "fifty small scenes that are hard for accelerators. SCENE may be `triangles`, those that consist of "
+        "triangles only; `families`, those generated from a seed; or one of these, as in "
         "family:kind=slivers,seed=7 (`raytally scenes family` lists them).\v"
         "Accelerators with their own hit functions (Embree's native mode, libraries as plugins) are judged "
         "if they are named: equal, tie, marginal (explained by rounding) or wrong. If fewer than 1000 rays, "
-        "or half "
-        "of "
-        "--rays-from, have an answer that rounding cannot change, the row is undecided, which is no success. "
-        "raytally writes the first wrong "
-        "answer of each row to a file (in --out DIR, or in verify-failures/), with the scene reduced to "
-        "the objects that cause it; --replay traces it again. Exit code 1 if anything is wrong."};
+        "or half of --rays-from, have an answer that rounding cannot change, the row is undecided, which is "
+        "no success. raytally writes the first wrong answer of each row to a file (in --out DIR, or in "
+        "verify-failures/), with the scene reduced to the objects that cause it; --replay traces it again. "
+        "Exit code 1 if anything is wrong."};
 
 RtStatus rt_command_verify(int argc, char **argv, RtError *error) {
     static Options o;

@@ -201,8 +201,7 @@ static RtStatus add_range(SweptParam *param, const char *text, const char *dots,
         return rt_fail(
             error, RT_BAD_INPUT,
             "'%s' is not a range: write LOW..HIGH+STEP with a step above 0, or LOW..HIGH*FACTOR with a "
-            "factor above 1 and LOW above 0, LOW below HIGH, as in 1..9+2 or 1e2..1e7*10; a list is "
-            "1|4|16",
+            "factor above 1 and LOW above 0, LOW below HIGH, as in 1..9+2 or 1e2..1e7*10; a list is 1|4|16",
             text);
     for (uint32_t i = 0; i <= RT_MAX_SWEEP_VALUES; i++, power *= step) {
         char number[RT_MAX_SWEPT_CHARS];

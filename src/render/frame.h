@@ -124,7 +124,7 @@ typedef struct RtFrame {
 RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptions *options, RtError *error);
 void rt_frame_clear(RtFrame *frame);
 
-/* ---- images (image.c): from samples to pixels and files, which are written completely or not at all ---- */
+/* ---- images: from samples to pixels and files, which are written completely or not at all ---- */
 
 /* 8-bit sRGB, as in a PNG. Owns its pixels. */
 typedef struct RtImage {

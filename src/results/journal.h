@@ -9,7 +9,7 @@
 #define RT_RESULTS_JOURNAL_H
 
 #include "core/text/json.h"
-#include "experiment/selection.h"
+#include "experiment/experiment.h"
 #include "results/results.h"
 
 /* ---- what a run tells while it fills the results ---- */

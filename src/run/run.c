@@ -168,36 +168,27 @@ static RtStatus check_whole(const Merge *merge, RtError *error) {
     return RT_OK;
 }
 
-/* All lines, shard by shard, after a header without a shard. */
-static RtStatus add_journal(const Merge *merge, const RtExperiment *experiment, const char *directory,
-                            RtOutputs *files, RtError *error) {
+/* The journal has all lines, shard by shard, after a header without a shard. */
+static RtStatus add_shards(const Merge *merge, const RtExperiment *experiment, const char *directory,
+                           RtOutputs *files, RtError *error) {
     static const RtSelection all = {0};
-    char path[RT_MAX_PATH];
-    RT_TRY(rt_path_join(directory, RT_RUN_JOURNAL, path, error));
-    json_t *lines = json_array();
+    char from[RT_MAX_PATH], to[RT_MAX_PATH];
+    for (uint32_t i = 0; i < merge->count * experiment->workload_count; i++) {
+        const char *shard = merge->directories[i / experiment->workload_count];
+        const uint32_t t = i % experiment->workload_count;
+        RT_TRY(rt_results_image_path(shard, experiment, t, from, error));
+        RT_TRY(rt_results_image_path(directory, experiment, t, to, error));
+        if (rt_file_exists(from)) RT_TRY(rt_outputs_copy(files, from, to, error));
+    }
+    RT_TRY(rt_path_join(directory, RT_RUN_JOURNAL, to, error));
+    json_auto_t *lines = json_array();
     for (uint32_t i = 0; i < merge->count; i++) {
         for (size_t line = 1; line < json_array_size(merge->journals[i]); line++) {
             json_t *object = json_array_get(merge->journals[i], line);
             if (json_is_object(object)) json_array_append(lines, object);
         }
     }
-    RtStatus status = rt_journal_add(files, path, experiment, &all, lines, error);
-    json_decref(lines);
-    return status;
-}
-
-/* And their pictures. */
-static RtStatus add_shards(const Merge *merge, const RtExperiment *experiment, const char *directory,
-                           RtOutputs *files, RtError *error) {
-    for (uint32_t i = 0; i < merge->count; i++) {
-        for (uint32_t t = 0; t < experiment->workload_count; t++) {
-            char from[RT_MAX_PATH], to[RT_MAX_PATH];
-            RT_TRY(rt_results_image_path(merge->directories[i], experiment, t, from, error));
-            RT_TRY(rt_results_image_path(directory, experiment, t, to, error));
-            if (rt_file_exists(from)) RT_TRY(rt_outputs_copy(files, from, to, error));
-        }
-    }
-    return add_journal(merge, experiment, directory, files, error);
+    return rt_journal_add(files, to, experiment, &all, lines, error);
 }
 
 /* ---- before ---- */

@@ -4,7 +4,7 @@
 #ifndef RT_RUN_WORKLOAD_H
 #define RT_RUN_WORKLOAD_H
 
-#include "experiment/selection.h"
+#include "experiment/experiment.h"
 #include "rays/rayset.h"
 #include "results/journal.h"
 

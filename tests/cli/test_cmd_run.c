@@ -187,7 +187,7 @@ PLACE_TEST(an_interruption_between_two_experiments_says_how_to_continue_too) {
 PLACE_TEST(a_limit_of_time_stops_all_and_says_the_command_that_continues) {
     change(place, "b.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 50\nmilliseconds: 200");
     assert_ends(place, "run b.yaml --threads 1 --out one --time 1", 2,
-                "raytally: stopped after 1 s (--time); ");
+                "raytally: stopped after 1 s (--time); what is finished is kept in one. To continue:");
     assert_in_file(place, "message", "To continue:\n  raytally run b.yaml --out one --threads 1 --resume\n");
     assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --out all --time 4", 2,
                 "stopped after 4 s (--time); ");

@@ -146,23 +146,11 @@ RT_TEST(a_tree_grows_by_one_level_with_depth_and_adds_up_to_the_color) {
 }
 
 RT_TEST(a_tree_is_printed_with_each_ray_the_five_terms_and_sums) {
-    assert_int_equal(trace(LECTURE " --pixel 42,42 --depth 2 --accel grid"), 0);
-    static const char *const parts[] = {"the ray tree, 2 levels, of pixel 42,42 of 80 x 60",
-                                        "  primary  ",
-                                        "  shadow to light 0  ",
-                                        "  reflection  ",
-                                        "  transmission  ",
-                                        "sphere, glass",
-                                        "from inside",
-                                        "nothing: lit",
-                                        "ambient  diffuse  specular  reflected  transmitted   light",
-                                        "in 2 levels, ",
-                                        "would reflect or transmit, but the depth is reached"};
-    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
-        if (!says(OUT ".txt", parts[i])) fail_msg("the tree does not say '%s'", parts[i]);
-    }
-    assert_said(trace(LECTURE " --pixel 42,42 --depth 1"), 0, OUT ".txt", "the ray tree, 1 level, of");
-    assert_true(says(OUT ".txt", "in 1 level, "));
+    assert_said(trace(LECTURE " --pixel 42,42 --depth 2 --accel grid"), 0, OUT ".txt",
+                "the ray tree, 2 levels, of pixel 42,42 of 80 x 60");
+    assert_true(says(OUT ".txt", "  shadow to light 0  ") && says(OUT ".txt", "sphere, glass"));
+    assert_true(says(OUT ".txt", "ambient  diffuse  specular  reflected  transmitted   light"));
+    assert_true(says(OUT ".txt", "would reflect or transmit, but the depth is reached"));
     assert_said(trace(LECTURE " --pixel 42,42 --depth 5 --rows 3"), 0, OUT ".txt",
                 "more rays\n       --rows 0 prints each\n");
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* docs/columns.md is generated from the columns of all tables; the test says where the current page is. The
- * committed files have these columns. */
+ * committed files have these columns. Every accelerator has a page with its parameters and their defaults. */
 #include "csv_testing.h"
 #include "testing.h"
 
@@ -53,7 +53,7 @@ typedef struct Section {
 
 #define RESULTS(which) .table = of_results(which), .swept = rt_result_table_sweeps(which)
 
-enum { SECTIONS = 18 };
+enum { SECTIONS = 16 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_CSV_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_JSON_GROUPS};
@@ -245,6 +245,33 @@ RT_TEST(the_files_that_are_kept_have_these_columns) {
             assert_string_equal(csv_name(&csv, c), row.column->id);
         }
         clear_csv(&csv);
+    }
+}
+
+/* ---- pages of accelerators ---- */
+
+/* A file of the source tree, for rt_free. */
+static char *read_document(const char *name) {
+    char path[1024], *text;
+    size_t size;
+    snprintf(path, sizeof path, "%s/%s", RT_SOURCE_DIR, name);
+    assert_ok(rt_file_read_text(path, 1 << 20, &text, &size, error));
+    return text;
+}
+
+RT_TEST(every_accelerator_has_a_page_with_its_parameters) {
+    OWNED_MEMORY char *index = read_document("docs/accelerators/README.md");
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        const RtAccelOps *ops = rt_accel_at(i);
+        char path[96], row[1024];
+        snprintf(row, sizeof row, "\n| [%s](%s.md) |", ops->name, ops->name);
+        if (!strstr(index, row)) fail_msg("docs/accelerators/README.md lacks a row%s", row);
+        snprintf(path, sizeof path, "docs/accelerators/%s.md", ops->name);
+        OWNED_MEMORY char *page = read_document(path);
+        for (size_t k = 0; k < ops->param_count; k++) {
+            snprintf(row, sizeof row, "\n| `%s` | %s |", ops->params[k].name, ops->params[k].default_text);
+            if (!strstr(page, row)) fail_msg("%s lacks a row%s", path, row);
+        }
     }
 }
 

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Runs that take long: how long, a part of them, what is left out, and what remains of them when they end. */
+/* Runs that take long: a part of them, and what is left out. */
 #include "experiment_testing.h"
 
 #include "results/result_tables.h"
-
-#include <signal.h>
-#include <time.h>
 
 static const char long_experiment[] = "name: small\nquestion: How long?\nprediction: A second.\n"
                                       "scenes:\n"
@@ -21,32 +18,6 @@ static const char long_experiment[] = "name: small\nquestion: How long?\npredict
 PLACES_WITH(long_experiment)
 
 #define RESUME "run small.yaml --threads 1 --out out --resume"
-
-static void wait_seconds(double seconds) {
-    struct timespec time = {.tv_sec = (time_t)seconds, .tv_nsec = (long)(1e9 * fmod(seconds, 1))};
-    nanosleep(&time, NULL);
-}
-
-/* Whole lines: the last may have been cut off. */
-static size_t journal_lines(const Place *place) {
-    if (!rt_file_exists(path_in(place, "out/cells.jsonl").text)) return 0;
-    OWNED_MEMORY char *text = read_in(place, "out/cells.jsonl");
-    size_t lines = 0;
-    for (const char *c = text; *c; c++) lines += *c == '\n';
-    return lines;
-}
-
-PLACE_TEST(an_interrupted_run_says_what_is_kept_and_how_to_go_on) {
-    pid_t child = start_raytally(place, RESUME);
-    while (journal_lines(place) < 20) wait_seconds(0.01);
-    kill(child, SIGINT);
-    assert_int_equal(end_of(child), 128 + SIGINT);
-    assert_in_file(place, "message", "interrupted; what is finished is kept in out. To continue:");
-    assert_in_file(place, "message", "raytally run small.yaml --out out --threads 1 --resume");
-    assert_runs(place, RESUME " --dry-run");
-    assert_in_file(place, "output", "finished\n");
-    assert_runs(place, RESUME);
-}
 
 PLACE_TEST(a_dry_run_lists_the_cells_and_touches_nothing) {
     assert_runs(place, "run small.yaml --out out --dry-run");

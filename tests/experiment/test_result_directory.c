@@ -7,7 +7,6 @@
 #include "core/base/file.h"
 #include "scenes/open.h"
 
-#include <signal.h>
 #include <sys/stat.h>
 
 static RtStatus run(const Place *place, const char *directory, RtStart start, RtError *error) {
@@ -216,20 +215,6 @@ PLACE_TEST(a_second_process_is_refused) {
     assert_bad_input(run(place, "out", RT_START_ANEW, error), "is writing");
     rt_lock_release(&lock);
     for (size_t i = 0; i < sizeof writing / sizeof writing[0]; i += 3) assert_runs(place, writing[i]);
-}
-
-PLACE_TEST(a_lock_goes_with_the_process_that_was_killed) {
-    RtLock lock;
-    int status;
-    pid_t child = fork();
-    assert_true(child >= 0);
-    if (child == 0) {
-        if (rt_lock_take(&lock, place->folder, NULL) == RT_OK) kill(getpid(), SIGKILL);
-        _exit(1);
-    }
-    assert_true(waitpid(child, &status, 0) == child && WIFSIGNALED(status));
-    assert_ok(rt_lock_take(&lock, place->folder, error));
-    rt_lock_release(&lock);
 }
 
 /* ---- plots ---- */

@@ -94,38 +94,6 @@ RT_TEST(a_difference_is_red_where_the_first_costs_more_and_blue_where_the_second
     assert_true(blue.rgb[2] > blue.rgb[0] && red.rgb[0] > red.rgb[2]);
 }
 
-/* Is any pixel of the columns from..to, in the rows of the labels, dark? */
-static bool has_label(const RtImage *image, int from, int to) {
-    bool found = false;
-    for (int y = 4; y < 18; y++) {
-        for (int x = from; x < to; x++) found |= pixel(image, x, y)[0] < 155;
-    }
-    return found;
-}
-
-RT_TEST(panels_of_four_pixels_have_the_labels_and_bars_of_their_pitch_and_no_more) {
-    enum { SIDE = 4, PITCH = 240, ROOM = 236, PAD = 5, BAR = 20 + SIDE + 30 };
-    static RtTally spent[2][SIDE * SIDE];
-    RtFrame frames[2] = {{.cost = spent[0]}, {.cost = spent[1]}};
-    char first[100] = {0}, second[] = "11111";
-    RtHeatmapPanel panels[2] = {{&frames[0], first}, {&frames[1], second}};
-    RtHeatmapOptions options = {.counter = offsetof(RtTally, steps) / sizeof(uint64_t), .difference = true};
-    memset(first, '1', sizeof first - 1);
-    spent[0][0].steps = 9;
-    for (int i = 0; i < 2; i++) assert_ok(rt_sampling_init(&frames[i].sampling, SIDE, SIDE, 1, false, error));
-    assert_ok(rt_heatmap_draw(PICTURE_FILE, panels, 2, &options, error));
-    OWNED_IMAGE image = read_picture();
-    assert_int_equal(image.width, 2 * PITCH + ROOM);
-    assert_true(has_label(&image, ROOM - PAD - 15, ROOM - PAD)); /* cut */
-    assert_false(has_label(&image, ROOM - PAD, PITCH + PAD));
-    assert_true(has_label(&image, PITCH + PAD, PITCH + PAD + 10));
-    assert_false(has_label(&image, PITCH + PAD + 40, 2 * PITCH + PAD));
-    const uint8_t *left = pixel(&image, 2 * PITCH + PAD + 1, BAR);
-    const uint8_t *right = pixel(&image, 2 * PITCH + ROOM - PAD - 2, BAR);
-    assert_true(left[2] > 80 && left[0] < 20 && right[0] > 90 && right[2] < 50); /* blue, red */
-    assert_memory_equal(pixel(&image, 2 * PITCH + ROOM - PAD + 1, BAR), RT_WHITE.rgb, 3);
-}
-
 RT_TEST(the_scale_grows_in_lightness) {
     double before = -1;
     for (int i = 0; i <= 100; i++) {

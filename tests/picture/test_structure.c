@@ -22,7 +22,6 @@ static RtScene five_balls(void) {
     assert_ok(rt_scene_finish(&scene, error));
     assert_ok(rt_scene_sample(&scene, SIDE, SIDE, 1, false, error));
     return scene;
-    return scene;
 }
 
 /* The picture of a structure over a frame of it. */
@@ -187,36 +186,6 @@ RT_TEST(a_section_shows_the_boxes_and_outlines_of_what_the_plane_cuts) {
     assert_int_equal(pixel(&image, (int)(100 - 3 * scale) + 1, 20)[0], 255);
     options.at = 5;
     assert_bad_input(draw(&scene, "extents", options, &image, error), "");
-}
-
-RT_TEST(a_structure_is_drawn_on_white_over_a_pale_image) {
-    OWNED_IMAGE image = {0};
-    OWNED_SCENE scene = five_balls();
-    assert_ok(draw(&scene, "bvh:max_leaf_size=64", RT_ALL_LEVELS, &image, error));
-    assert_memory_equal(pixel(&image, 2, 2), RT_WHITE.rgb, 3);
-    for (int c = 0; c < 3; c++) { /* the sphere in the middle */
-        assert_true(pixel(&image, 100, 100)[c] >= 150);
-        assert_true(pixel(&image, 100, 100)[c] < 255);
-    }
-}
-
-/* The ink around an upright line. */
-static int ink_across(const RtImage *image, int x, int y) {
-    int sum = 0;
-    for (int i = x - 3; i <= x + 3; i++) sum += 255 - pixel(image, i, y)[1];
-    return sum;
-}
-
-RT_TEST(deep_levels_have_lighter_and_thinner_lines_than_the_first) {
-    OWNED_IMAGE image = {0};
-    OWNED_SCENE scene = five_balls();
-    RtStructureOptions options = {.last_level = UINT32_MAX, .slice = true, .axis = 2, .at = 0.5};
-    assert_ok(draw(&scene, "bvh:max_leaf_size=1", options, &image, error));
-    double scale = 0.96 * SIDE / 6;
-    int root = ink_across(&image, (int)(100 - 3 * scale), 100); /* no other box ends there, nor here: */
-    int leaf = ink_across(&image, (int)(100 + 2 * scale), (int)(100 - 2.85 * scale));
-    assert_true(leaf > 30);
-    assert_true(root > 2 * leaf);
 }
 
 RT_TEST(a_section_outlines_csg_trees) {
