@@ -76,4 +76,43 @@ static inline void assert_answers_like_brute(const FamilyBench *bench, const cha
     assert_gives(&bench->reference, spec);
 }
 
+/* Checks one spec; tells what is wrong and returns false if anything is. What is refused with this phrase,
+ * unless it is NULL, conforms. */
+static inline bool conforms(const FamilyBench *bench, const char *spec, const char *may_refuse) {
+    RtError error = {RT_OK, ""};
+    OWNED_ACCEL RtAccel *accel;
+    const char *scene = bench->scene.name;
+    RtStatus status = rt_accel_open(spec, &bench->scene, &accel, &error);
+    if (status == RT_NOT_AVAILABLE) {
+        print_message("%s on %s is skipped: %s\n", spec, scene, error.message);
+        return true;
+    }
+    if (status == RT_BAD_INPUT && may_refuse && strstr(error.message, may_refuse)) return true;
+    if (status != RT_OK) {
+        print_error("%s on %s cannot be built: %s\n", spec, scene, error.message);
+        return false;
+    }
+    RtEquivalence result = {0};
+    bool good = true;
+    if (rt_accel_validate(accel, &error) != RT_OK) {
+        print_error("%s on %s is not valid: %s\n", spec, scene, error.message);
+        good = false;
+    }
+    if (rt_equivalence_check(&bench->reference, accel, 0, &result, &error) != RT_OK) {
+        print_error("%s on %s cannot be checked: %s\n", spec, scene, error.message);
+        good = false;
+    }
+    if (result.any_wrong && accel->exact) { /* others have faults: tests/check_verdicts.sh */
+        char text[512];
+        size_t each_family = bench->reference.count / rt_ray_family_count();
+        rt_wrong_answer_format(&result.first_wrong, text, sizeof text);
+        print_error("%s on %s: %llu of %llu wrong, %llu occluded wrong; family %s, %s\n", spec, scene,
+                    (unsigned long long)result.verdicts[RT_WRONG], (unsigned long long)result.rays,
+                    (unsigned long long)result.occluded_wrong,
+                    rt_ray_family_name(result.first_wrong.index / each_family), text);
+        good = false;
+    }
+    return good;
+}
+
 #endif

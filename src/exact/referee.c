@@ -19,29 +19,18 @@ long double rt_float_ulp(long double x) {
 /* ---- the nearest ---- */
 
 typedef struct Search {
-    size_t mark; /* of the before the search */
     const RtGeometry *geometry;
-    RtWideRay line;
-    RtExactLine exact;
+    RtExactLine line;
     RtRoot best;
     RtExactAnswer nearest;
     double open; /* the smallest t at which an undecided object may be met */
 } Search;
 
-static void search_init(Search *s, const RtGeometry *geometry, const RtRay *ray) {
-    *s = (Search){.mark = rt_exact_mark(),
-                  .geometry = geometry,
-                  .line = rt_wide_ray(ray),
-                  .nearest = {.result = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL},
-                  .open = HUGE_VAL};
-    s->exact = rt_exact_line(&s->line);
-}
-
 /* Numbers of objects that are not the nearest are discarded at once. */
 static void consider(Search *s, uint32_t id, double soonest) {
     size_t mark = rt_exact_mark();
     RtRoot t;
-    RtExactResult result = rt_exact_hit(s->geometry, id, &s->exact, &t);
+    RtExactResult result = rt_exact_hit(s->geometry, id, &s->line, &t);
     if (result == RT_UNDECIDED) s->open = fmin(s->open, soonest);
     int order = -1;
     if (result == RT_HIT && s->nearest.tied > 0) order = rt_root_compare(&t, &s->best);
@@ -52,24 +41,24 @@ static void consider(Search *s, uint32_t id, double soonest) {
     }
     s->best = t;
     s->nearest =
-        (RtExactAnswer){.result = RT_HIT, .object = id, .tied = 1, .t = rt_root_value(&t, s->exact.zero)};
-}
-
-static void search(Search *s) {
-    for (uint32_t id = 0; id < s->geometry->object_count; id++) {
-        double soonest;
-        if (!rt_line_may_meet(&s->line, &s->geometry->boxes[id], &soonest)) continue;
-        if ((long double)soonest * (1 - RT_LINE_SLACK) > s->nearest.t) continue;
-        consider(s, id, soonest);
-    }
-    if (s->open < HUGE_VAL && (long double)s->open <= s->nearest.t) s->nearest.result = RT_UNDECIDED;
+        (RtExactAnswer){.result = RT_HIT, .object = id, .tied = 1, .t = rt_root_value(&t, s->line.zero)};
 }
 
 RtExactAnswer rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray) {
-    Search s;
-    search_init(&s, geometry, ray);
-    search(&s);
-    rt_exact_rewind(s.mark);
+    size_t mark = rt_exact_mark();
+    RtWideRay line = rt_wide_ray(ray);
+    Search s = {.geometry = geometry,
+                .line = rt_exact_line(&line),
+                .nearest = {.result = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL},
+                .open = HUGE_VAL};
+    for (uint32_t id = 0; id < geometry->object_count; id++) {
+        double soonest;
+        if (!rt_line_may_meet(&line, &geometry->boxes[id], &soonest)) continue;
+        if ((long double)soonest * (1 - RT_LINE_SLACK) > s.nearest.t) continue;
+        consider(&s, id, soonest);
+    }
+    if (s.open < HUGE_VAL && (long double)s.open <= s.nearest.t) s.nearest.result = RT_UNDECIDED;
+    rt_exact_rewind(mark);
     return s.nearest;
 }
 

@@ -132,44 +132,42 @@ static bool get_ray(const json_t *object, RtRay *ray) {
     return rt_ray_is_valid(ray);
 }
 
-/* On failure returns false and the name of the first wrong member, or NULL if memory is short. */
-static bool take(RtReplay *r, const char **wrong) {
-    const json_t *d = r->document, *rays = json_object_get(d, "rays");
-    const json_t *sampling = json_object_get(d, "sampling"), *shrunk = json_object_get(d, "shrunk");
+/* All members but the rays; returns the name of the first that is wrong, or NULL. */
+static const char *take_members(RtReplay *r) {
+    const json_t *d = r->document, *sampling = json_object_get(d, "sampling");
     RtFailure *q = &r->failure;
     uint64_t stream, asked;
     const char *hex = json_string_value(json_object_get(d, "fingerprint"));
     r->scene_spec = json_string_value(json_object_get(d, "scene"));
     q->spec = json_string_value(json_object_get(d, "accel"));
     r->yaml = json_string_value(json_object_get(d, "yaml"));
-    r->shrunk_yaml = json_string_value(json_object_get(shrunk, "yaml"));
+    r->shrunk_yaml = json_string_value(json_object_get(json_object_get(d, "shrunk"), "yaml"));
     r->columns = (uint32_t)json_integer_value(json_array_get(sampling, 0));
     r->rows = (uint32_t)json_integer_value(json_array_get(sampling, 1));
-    q->count = json_array_size(rays);
-    if (*wrong = "scene", !r->scene_spec) return false;
-    if (*wrong = "accel", !q->spec) return false;
-    if (*wrong = "fingerprint", !hex || sscanf(hex, "%" SCNx64, &r->fingerprint) != 1) return false;
-    if (*wrong = "sampling", json_array_size(sampling) != 2) return false;
-    if (*wrong = "query", !get_word(d, "query", "nearest", "occluded", &q->occluded)) return false;
-    if (*wrong = "kernel", !get_word(d, "kernel", "timed", "counted", &q->counted)) return false;
-    if (*wrong = "stream", !get_count(d, "stream", UINT32_MAX, &stream) || stream == 0) return false;
-    if (*wrong = "rays", q->count == 0) return false;
-    if (*wrong = "asked", !get_count(d, "asked", q->count - 1, &asked)) return false;
+    q->count = json_array_size(json_object_get(d, "rays"));
+    if (!r->scene_spec) return "scene";
+    if (!q->spec) return "accel";
+    if (!hex || sscanf(hex, "%" SCNx64, &r->fingerprint) != 1) return "fingerprint";
+    if (json_array_size(sampling) != 2) return "sampling";
+    if (!get_word(d, "query", "nearest", "occluded", &q->occluded)) return "query";
+    if (!get_word(d, "kernel", "timed", "counted", &q->counted)) return "kernel";
+    if (!get_count(d, "stream", UINT32_MAX, &stream) || stream == 0) return "stream";
+    if (q->count == 0) return "rays";
+    if (!get_count(d, "asked", q->count - 1, &asked)) return "asked";
     q->stream = stream;
     q->asked = asked;
-    *wrong = NULL;
-    if (!(q->rays = r->rays = rt_alloc(q->count, sizeof(RtRay)))) return false;
-    *wrong = "rays";
-    for (size_t i = 0; i < q->count; i++) {
-        if (!get_ray(json_array_get(rays, i), &r->rays[i])) return false;
-    }
-    return true;
+    return NULL;
 }
 
-static RtStatus take_all(RtReplay *replay, const char *path, RtError *error) {
-    const char *wrong;
-    if (take(replay, &wrong)) return RT_OK;
-    if (!wrong) return rt_fail_memory(error, "rays", replay->failure.count * sizeof(RtRay));
+static RtStatus take(RtReplay *r, const char *path, RtError *error) {
+    const char *wrong = take_members(r);
+    size_t count = r->failure.count;
+    if (!wrong && !(r->failure.rays = r->rays = rt_alloc(count, sizeof(RtRay))))
+        return rt_fail_memory(error, "rays", count * sizeof(RtRay));
+    for (size_t i = 0; !wrong && i < count; i++) {
+        if (!get_ray(json_array_get(json_object_get(r->document, "rays"), i), &r->rays[i])) wrong = "rays";
+    }
+    if (!wrong) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT, "%s: this is not a replay file: '%s' is missing or invalid", path,
                    wrong);
 }
@@ -187,7 +185,7 @@ RtStatus rt_replay_load(RtReplay *replay, const char *path, RtError *error) {
                           at.text);
     }
     RtStatus status = rt_json_check_format(replay->document, path, error);
-    if (status == RT_OK) status = take_all(replay, path, error);
+    if (status == RT_OK) status = take(replay, path, error);
     if (status != RT_OK) rt_replay_clear(replay);
     return status;
 }

@@ -395,10 +395,6 @@ RT_TEST(rows_add_up_over_the_parameters_of_an_accelerator) {
     assert_ok(rt_directory_create(OUT "/e", error));
     assert_ok(rt_verify_write(rows, OUT "/e", error));
     OWNED_MEMORY char *table = text_of(OUT "/e", "verify.md");
-    assert_non_null(strstr(table, "500 comparisons"));
-    assert_non_null(
-        strstr(table, "400 with `brute`, bit for bit (0 of them of `brute` with itself),\nand 100 judged"));
-    assert_non_null(strstr(table, "0 answers to `nearest` are wrong, 5 to `occluded`"));
     assert_non_null(strstr(table, "\n| `item+bvh` | 3 | 300 | 300 | 0 | 0 | 0 | 5 | 1 |\n"));
     assert_non_null(strstr(table, "\n| `embree` * | 1 | 100 | 93 | 0 | 7 | 0 | 0 | 0 |\n"));
     assert_non_null(strstr(table, "\n| `embree` | 4 | 0 | 3 | 0 | 0 |\n"));

@@ -175,16 +175,7 @@ bool rt_csg_hit(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRa
 
 /* ---- facets ---- */
 
-static RtCsgFacet facet_of(const RtCsgForest *forest, const RtPreparedRay *ray, const RtCrossing *crossing) {
-    RtVec3d point = rt_add_scaledd(rt_widen(rt_vec3_load(ray->org)), rt_widen(rt_vec3_load(ray->dir)),
-                                   (double)crossing->t);
-    RtVec3d normal = rt_solid_normal(&forest->set, crossing->solid, crossing->face, point);
-    bool inward = forest->set.solids[crossing->solid].subtracted;
-    return (RtCsgFacet){inward ? rt_scaled(normal, -1) : normal, crossing->solid};
-}
-
 RtCsgFacet rt_csg_facet(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRay *ray, float t) {
-    RtCsgFacet facet = {{0, 0, 0}, tree->first_solid};
     RtSolidRay solid = solid_ray(tree, ray);
     Machine m;
     start(&m, tree, ray);
@@ -198,8 +189,11 @@ RtCsgFacet rt_csg_facet(const RtCsgForest *forest, const RtCsg *tree, const RtPr
         least = fabsf(at - t);
         best = &m.crossings[i];
     }
-    if (best) facet = facet_of(forest, ray, best);
-    return facet;
+    if (!best) return (RtCsgFacet){{0, 0, 0}, tree->first_solid};
+    RtVec3d point = rt_add_scaledd(solid.org, solid.dir, (double)best->t);
+    RtVec3d normal = rt_solid_normal(&forest->set, best->solid, best->face, point);
+    bool inward = forest->set.solids[best->solid].subtracted;
+    return (RtCsgFacet){inward ? rt_scaled(normal, -1) : normal, best->solid};
 }
 
 /* ---- extents: the program runs on numbers or balls instead of lists of crossings ---- */
