@@ -26,26 +26,18 @@ static const char *const kind_names[RT_EXTENT_KIND_COUNT] = {"box", "sphere", "o
 
 /* ---- sets ---- */
 
-static size_t bytes_each(const RtExtentSet *set) {
-    switch (set->kind) {
-    case RT_EXTENT_SPHERE: return sizeof(RtBall);
-    case RT_EXTENT_OBB: return sizeof(RtOrientedBox);
-    case RT_EXTENT_SLABS: return set->slabs_each * sizeof(RtSlab);
-    case RT_EXTENT_BOX:
-    case RT_EXTENT_KIND_COUNT: break;
-    }
-    return 0;
-}
-
 size_t rt_extent_set_bytes(const RtExtentSet *set) {
-    return set->count * bytes_each(set);
+    const size_t each[RT_EXTENT_KIND_COUNT] = {[RT_EXTENT_SPHERE] = sizeof(RtBall),
+                                               [RT_EXTENT_OBB] = sizeof(RtOrientedBox),
+                                               [RT_EXTENT_SLABS] = set->slabs_each * sizeof(RtSlab)};
+    return set->count * each[set->kind];
 }
 
 RtStatus rt_extent_set_init(RtExtentSet *set, RtArena *memory, RtExtentKind kind, uint32_t slabs_each,
                             uint32_t count, RtError *error) {
     *set = (RtExtentSet){.kind = kind, .slabs_each = slabs_each, .count = count};
     if (kind == RT_EXTENT_BOX) return RT_OK;
-    void *block = rt_arena_alloc(memory, count, bytes_each(set));
+    void *block = rt_arena_alloc(memory, 1, rt_extent_set_bytes(set));
     if (kind == RT_EXTENT_SPHERE) set->balls = block;
     if (kind == RT_EXTENT_OBB) set->oriented = block;
     if (kind == RT_EXTENT_SLABS) set->slabs = block;
