@@ -278,49 +278,51 @@ void rt_print_distributions(const RtResults *results, FILE *out) {
 
 /* ---- null runs ---- */
 
-/* How often the interval of a null run misses the median, on average over the null runs, which --until may
- * have given different numbers of rounds; *fewest gets the least of these. */
-static double chance_of_missing(const RtResults *results, uint32_t *fewest) {
-    double sum = 0;
-    uint32_t runs = 0;
-    *fewest = RT_MAX_ROUNDS;
+typedef struct NullRuns {
+    uint32_t runs, straddling; /* and those whose interval contains 1 */
+    uint32_t fewest;           /* rounds of one; --until may have given them different numbers */
+    double chance;             /* that an interval misses the median, on average */
+} NullRuns;
+
+static NullRuns null_runs_of(const RtResults *results) {
+    NullRuns null = {.fewest = RT_MAX_ROUNDS};
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
             const RtCell *cell = rt_cell_at(results, t, results->experiment->candidate_count, (RtRayKind)k);
             if (!cell->timed) continue;
-            sum += 1 - rt_interval_coverage(cell->rounds);
-            *fewest = cell->rounds < *fewest ? cell->rounds : *fewest;
-            runs++;
+            null.runs++;
+            null.straddling += rt_estimate_holds(&cell->ratio, 1);
+            null.chance += 1 - rt_interval_coverage(cell->rounds);
+            null.fewest = cell->rounds < null.fewest ? cell->rounds : null.fewest;
         }
     }
-    return sum / runs;
+    null.chance /= null.runs;
+    return null;
 }
 
 void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
     const RtExperiment *experiment = results->experiment;
-    uint32_t runs, straddling;
-    rt_null_verdict(results, &runs, &straddling);
+    const NullRuns null = null_runs_of(results);
+    const uint32_t misses = null.runs - null.straddling;
     out[0] = '\0';
-    if (runs == 0) return;
+    if (null.runs == 0) return;
     snprintf(out, RT_MAX_SENTENCE,
              "Null runs: %s is %s measured a second time, to show the noise; %" PRIu32 " of %" PRIu32
              " interval%s include%s 1",
-             experiment->again, experiment->candidates[experiment->baseline].label, straddling, runs,
-             rt_plural(runs), runs == 1 ? "s" : "");
-    uint32_t misses = runs - straddling, rounds;
-    const double chance = chance_of_missing(results, &rounds);
+             experiment->again, experiment->candidates[experiment->baseline].label, null.straddling,
+             null.runs, rt_plural(null.runs), null.runs == 1 ? "s" : "");
     if (misses == 0)
         rt_append_text(out, RT_MAX_SENTENCE, ", as expected.");
-    else if (rt_binomial_tail(misses, runs, chance) >= 0.05)
+    else if (rt_binomial_tail(misses, null.runs, null.chance) >= 0.05)
         rt_append_text(out, RT_MAX_SENTENCE, "; each misses it by chance in %.3g %% of all cases.",
-                       100 * chance);
+                       100 * null.chance);
     else
         rt_append_text(out, RT_MAX_SENTENCE, ": the machine was busy; treat small differences as noise.");
-    if (rounds >= RT_FULL_ROUNDS) return;
+    if (null.fewest >= RT_FULL_ROUNDS) return;
     rt_append_text(out, RT_MAX_SENTENCE,
                    " Rounds: %" PRIu32 ", too few for 95 %%; an interval spans all measurements and contains "
                    "the median with %.3g %% confidence. Use %d or more.",
-                   rounds, 100 * rt_interval_coverage(rounds), RT_FULL_ROUNDS);
+                   null.fewest, 100 * rt_interval_coverage(null.fewest), RT_FULL_ROUNDS);
 }
 
 /* ---- the end of a run ---- */

@@ -122,17 +122,6 @@ uint32_t rt_results_rounds(const RtResults *results, uint32_t workload, uint32_t
     return most;
 }
 
-void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling) {
-    *runs = *straddling = 0;
-    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
-        for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
-            const RtCell *cell = rt_cell_at(results, t, results->experiment->candidate_count, (RtRayKind)k);
-            *runs += cell->timed;
-            *straddling += cell->timed && rt_estimate_holds(&cell->ratio, 1);
-        }
-    }
-}
-
 void rt_results_leave_out(RtResults *results, uint32_t workload, uint32_t candidate, const char *why,
                           bool refused, bool broken) {
     const RtExperiment *e = results->experiment;

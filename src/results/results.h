@@ -148,9 +148,6 @@ bool rt_results_next(const RtResults *results, RtCellCursor *at);
 /* The number of measured cells, and of their scenes. */
 uint64_t rt_results_size(const RtResults *results, uint32_t *scenes);
 
-/* The number of null runs, and of those whose interval contains 1. */
-void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling);
-
 /* RT_BROKEN with the first plugin that broke, if any did; RT_BAD_INPUT if all accelerators refused all
  * scenes. */
 RtStatus rt_results_check(const RtResults *results, RtError *error);
