@@ -199,6 +199,13 @@ const char *rt_field_show(RtForm form, const RtField *field, char buffer[RT_MAX_
     return buffer;
 }
 
+/* One end of a ratio's interval; if it is not 1, nine digits do not show it as 1. */
+static json_t *ratio_end(double value) {
+    if (value > 1 && value < 1 + 1e-8) value = 1 + 1e-8;
+    if (value < 1 && value > 1 - 1e-9) value = 1 - 1e-9;
+    return rt_json_number(value);
+}
+
 static json_t *field_json(RtForm form, const RtField *field) {
     char buffer[RT_MAX_FIELD];
     switch (field->is) {
@@ -206,7 +213,7 @@ static json_t *field_json(RtForm form, const RtField *field) {
     case RT_FIELD_INTEGER:
         if (form != RT_FORM_hash) return json_integer((json_int_t)field->integer);
         break;
-    case RT_FIELD_REAL: return form == RT_FORM_end ? rt_json_ratio_end(field->real) : json_real(field->real);
+    case RT_FIELD_REAL: return form == RT_FORM_end ? ratio_end(field->real) : json_real(field->real);
     case RT_FIELD_INTERVAL:
         return json_pack("{s:o, s:o, s:o}", "value", rt_json_number(field->real), "low",
                          rt_json_number(field->low), "high", rt_json_number(field->high));
