@@ -84,9 +84,7 @@ DEFINE(div)
 #undef DEFINE
 
 RtRational rt_exact_neg(RtRational a) {
-    mpq_ptr out = new_number();
-    mpq_neg(out, a);
-    return out;
+    return rt_exact_sub(rt_exact_of(0), a);
 }
 
 /* Shifts the quotient of numerator and denominator to 64 or 65 bits and rounds it down: an error of at

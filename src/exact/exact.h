@@ -90,8 +90,8 @@ int rt_polynomial_roots(const RtPolynomial *p, RtRoot roots[RT_MAX_DEGREE]);
 int rt_root_compare(const RtRoot *a, const RtRoot *b);
 int rt_root_compare_rational(const RtRoot *a, RtRational t);
 
-/* root - from, with a relative error below 2^-62 however close they are; exactly 0 if equal. */
-long double rt_root_value(const RtRoot *root, RtRational from);
+/* a - from, with a relative error below 2^-62 however close they are; exactly 0 if equal. */
+long double rt_root_value(const RtRoot *a, RtRational from);
 
 /* ---- lines ---- */
 

@@ -17,22 +17,22 @@ static RtRay ray_at_triangle(RtRandom *random, const RtVec3 v[3], int i) {
     return ray;
 }
 
-typedef RtDecision HitFunction(const RtGeometry *g, const RtRay *ray);
+typedef Decision HitFunction(const RtGeometry *g, const RtRay *ray);
 
-static RtDecision ours(const RtGeometry *g, const RtRay *ray) {
-    return rt_decision_of(g, 0, ray, NULL);
+static Decision ours(const RtGeometry *g, const RtRay *ray) {
+    return decision_of(g, 0, ray, NULL);
 }
 
 /* The well-known mistake: what counts as parallel does not depend on how large the triangle is. */
-static RtDecision with_an_absolute_epsilon(const RtGeometry *g, const RtRay *ray) {
+static Decision with_an_absolute_epsilon(const RtGeometry *g, const RtRay *ray) {
     const RtVec3 *v = g->triangles[0].v;
     RtVec3d side = rt_subd(rt_widen(v[1]), rt_widen(v[0])), other = rt_subd(rt_widen(v[2]), rt_widen(v[0]));
     double determinant = rt_dotd(side, rt_crossd(rt_widen(ray->dir), other));
-    return fabs(determinant) < 1e-6 ? (RtDecision){.t = INFINITY} : ours(g, ray);
+    return fabs(determinant) < 1e-6 ? (Decision){.t = INFINITY} : ours(g, ray);
 }
 
 /* Decides by a place that is a little beside the ray. */
-static RtDecision decided_beside(const RtGeometry *g, const RtRay *ray) {
+static Decision decided_beside(const RtGeometry *g, const RtRay *ray) {
     RtRay moved = *ray;
     for (int a = 0; a < 3; a++) moved.org.at[a] += a == 0 ? 0x1p-8f : -0x1p-8f;
     return ours(g, &moved);
@@ -52,11 +52,11 @@ static Wrongs wrongs_of(HitFunction *decide, float size, int rays) {
         for (int k = 0; k < 3; k++) v[k] = rt_scale(rt_random_point(&random, 1), size);
         OWNED_OBJECT(g, triangle, v, NULL);
         RtRay ray = ray_at_triangle(&random, v, i);
-        RtDecision decision = decide(&g, &ray);
+        Decision decision = decide(&g, &ray);
         RtWideRay line = rt_wide_ray(&ray);
-        if (rt_decision_check(&g, 0, &line, decision) != RT_HIT) {
+        if (check_decision(&g, 0, &line, decision) != RT_HIT) {
             wrongs.wrong++;
-            wrongs.far += rt_border_distance(&g, 0, &ray, decision) > 2;
+            wrongs.far += border_distance(&g, 0, &ray, decision) > 2;
         }
     }
     return wrongs;
@@ -84,7 +84,7 @@ RT_TEST(the_referee_decides_against_us_too) {
         OWNED_OBJECT(g, triangle, v, NULL);
         RtRay ray = ray_at_triangle(&random, v, i);
         RtHit expected = RT_MISS, right = RT_MISS;
-        RtDecision decision = ours(&g, &ray);
+        Decision decision = ours(&g, &ray);
         RtExactAnswer ruling = rt_referee_nearest(&g, &ray);
         if (decision.hit) expected = (RtHit){decision.t, 0};
         if (ruling.result == RT_HIT) right = (RtHit){(float)ruling.t, 0};

@@ -98,9 +98,9 @@ RT_TEST(equal_places_of_rings_and_balls_are_a_tie) {
     ray.org.y = 0x1p-40f; /* beside the plane through both centres: a little of the ring is left */
     line = rt_wide_ray(&ray);
     assert_int_equal(rt_referee_hit(&g, 2, &line, &t), RT_HIT);
-    long double off, ulps, full;
+    long double off, ulps = 0, full;
     assert_int_equal(rt_referee_hit(&g, 0, &line, &full), RT_HIT);
-    assert_int_equal(rt_referee_error(&g, 0, &ray, (float)full, &off, &ulps), RT_HIT);
+    assert_int_equal(error_of_t(&g, 0, &ray, (float)full, &off, &ulps), RT_HIT);
     assert_true(fabsl(ulps) <= 0.5L && ulps != 0);
 }
 
@@ -377,10 +377,10 @@ static void judge(const RtGeometry *g, const RtRay *ray, int *hits) {
     RtWideRay line = rt_wide_ray(ray);
     if (ray->tmin == ray->tmax || has_few_digits(g, &line)) return;
     for (uint32_t id = 0; id < g->object_count; id++) {
-        RtDecision ours = rt_decision_of(g, id, ray, crossings_of_tests());
+        Decision ours = decision_of(g, id, ray, crossings_of_tests());
         if (!ours.hit && id != ruling.object) continue;
-        if (rt_decision_check(g, id, &line, ours) == RT_HIT) continue;
-        double border = rt_border_distance(g, id, ray, ours);
+        if (check_decision(g, id, &line, ours) == RT_HIT) continue;
+        double border = border_distance(g, id, ray, ours);
         if (border > 2) fail_msg("object %u, %g units from a border", id, border);
     }
 }

@@ -346,7 +346,7 @@ static RtRay ray_to_box(Range *r, uint32_t id) {
 /* Through a point of the surface that an ordinary ray hits, by an angle with it; one of 0 makes a tangent. */
 static RtRay ray_along_surface(Range *r, uint32_t id, double angle) {
     RtRay ray = ray_to_box(r, id);
-    RtDecision decision = rt_decision_of(r->geometry, id, &ray, crossings_of_tests());
+    Decision decision = decision_of(r->geometry, id, &ray, crossings_of_tests());
     if (!decision.hit) return ray;
     RtVec3d normal = rt_object_normals(r->geometry, id, &ray, decision.t, crossings_of_tests()).geometric;
     RtVec3d tangent = rt_normalized(rt_crossd(normal, rt_random_direction(&r->random)));
@@ -395,7 +395,7 @@ static RtRay ray_to_border(Range *r, uint32_t id) {
 /* From where an ordinary ray hits the object, if it does. */
 static RtRay ray_from_surface(Range *r, uint32_t id) {
     RtRay ray = ray_to_box(r, id);
-    RtDecision decision = rt_decision_of(r->geometry, id, &ray, crossings_of_tests());
+    Decision decision = decision_of(r->geometry, id, &ray, crossings_of_tests());
     if (!decision.hit) return ray;
     ray.org = rt_narrow(rt_ray_point(&ray, decision.t));
     ray.dir = rt_narrow(rt_random_direction(&r->random));
@@ -423,25 +423,24 @@ static double off_surface(const Range *r, uint32_t id, const RtRay *ray, float t
     const RtGeometry *g = r->geometry;
     RtWideRay line = rt_wide_ray(ray);
     double rate = rt_dotd(rt_object_normals(g, id, ray, t, crossings_of_tests()).geometric, line.dir);
-    return fabs(error * rate) / rt_border_unit(g, id, &line);
+    return fabs(error * rate) / border_unit(g, id, &line);
 }
 
 /* `errors` has room for one more at out->hits. */
 static void measure_ray(const Range *r, uint32_t id, const RtRay *ray, double *errors, Precision *out) {
     const RtGeometry *g = r->geometry;
-    RtDecision ours = rt_decision_of(g, id, ray, crossings_of_tests());
+    Decision ours = decision_of(g, id, ray, crossings_of_tests());
     long double off = 0, ulps = 0;
-    RtExactResult exact = rt_referee_error(g, id, ray, ours.hit ? ours.t : 0, &off, &ulps);
+    RtExactResult exact = error_of_t(g, id, ray, ours.hit ? ours.t : 0, &off, &ulps);
     RtWideRay line = rt_wide_ray(ray);
-    RtExactResult same = rt_decision_check(g, id, &line, ours);
+    RtExactResult same = check_decision(g, id, &line, ours);
     assert_true(exact != RT_UNDECIDED && same != RT_UNDECIDED);
     const double size = (double)fabsl(off), rounding = 0.501 * (double)rt_float_ulp((long double)ours.t);
     const double height = same == RT_HIT && exact == RT_HIT ? off_surface(r, id, ray, ours.t, size) : 0;
     if (same == RT_HIT && (height <= 2 || r->subject == TRIANGLE)) { /* else another crossing */
         if (exact != RT_HIT) return;
         out->off = fmax(out->off, height);
-        out->excess =
-            fmax(out->excess, (size - rounding) * rt_lengthd(line.dir) / rt_border_unit(g, id, &line));
+        out->excess = fmax(out->excess, (size - rounding) * rt_lengthd(line.dir) / border_unit(g, id, &line));
         errors[out->hits++] = (double)fabsl(ulps);
         return;
     }
@@ -451,7 +450,7 @@ static void measure_ray(const Range *r, uint32_t id, const RtRay *ray, double *e
         out->invented++;
     else
         out->elsewhere++;
-    out->border = fmax(out->border, rt_border_distance(g, id, ray, ours));
+    out->border = fmax(out->border, border_distance(g, id, ray, ours));
 }
 
 /* Aims RAYS rays of a case at such objects: the same on any machine. */

@@ -244,11 +244,11 @@ RT_TEST(the_referee_says_who_is_right) {
     }
     assert_int_equal(rt_referee_judge(&g, &ray, (RtHit){1.001f, 0}, RT_MISS, 0.01).side, RT_SIDE_EXPECTED);
     long double off, ulps;
-    assert_int_equal(rt_referee_error(&g, 0, &ray, nextafterf(1, 2), &off, &ulps), RT_HIT);
+    assert_int_equal(error_of_t(&g, 0, &ray, nextafterf(1, 2), &off, &ulps), RT_HIT);
     assert_true(ulps == 1);
-    assert_int_equal(rt_referee_error(&g, 0, &ray, nextafterf(1, 0), &off, &ulps), RT_HIT);
+    assert_int_equal(error_of_t(&g, 0, &ray, nextafterf(1, 0), &off, &ulps), RT_HIT);
     assert_true(ulps == -0.5L);
-    assert_int_equal(rt_referee_error(&g, 0, &aside, 1, &off, &ulps), RT_MISSED);
+    assert_int_equal(error_of_t(&g, 0, &aside, 1, &off, &ulps), RT_MISSED);
 }
 
 RT_TESTS(referee, NULL, NULL)

@@ -111,7 +111,7 @@ RtStatus rt_geometry_copy_csg(RtGeometry *geometry, const RtGeometry *from, uint
 /* Computes the boxes. Call it once, after the last object. */
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error);
 
-uint64_t rt_geometry_bytes(const RtGeometry *geometry);
+uint64_t rt_geometry_bytes(const RtGeometry *geometry); /* of memory that the arrays hold */
 void rt_geometry_clear(RtGeometry *geometry);
 
 #define RT_NO_SOLID UINT32_MAX
