@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Stacks of accelerators, overlays over a base: building, describing and querying them; and what accelerators
- * share: the test of all objects, and sums over boxes. */
+/* Stacks of accelerators, overlays over a base: their layers, and what is asked of the whole; and what
+ * accelerators share: the test of all objects, and sums over boxes. */
 #include "accel/kernel.h"
-#include "accel/plugin.h"
-#include "core/base/clock.h"
-#include "core/base/parallel.h"
 
 #include <assert.h>
 
-/* ---- building ---- */
+/* ---- layers ---- */
 
 uint64_t rt_accel_byte_limit(const RtScene *scene) {
     const uint64_t bytes = scene->geometry.object_count * RT_ACCEL_OBJECT_BYTES;
@@ -39,50 +36,6 @@ RtStatus rt_accel_build_layer(const RtAccelOps *ops, const RtBuild *what, RtAcce
     else
         destroy_layer(accel);
     return status;
-}
-
-static RtStatus build_layers(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
-                             RtError *error) {
-    RtAccel *top = NULL;
-    double start = rt_wall_seconds();
-    *out = NULL;
-    RT_TRY(rt_spec_available(spec, error));
-    for (uint32_t i = spec->layer_count; i-- > 0;) {
-        const RtBuild what = {scene, spec->layers[i].values, threads, rt_accel_byte_limit(scene)};
-        RtStatus status = rt_accel_build_layer(spec->layers[i].ops, &what, top, &top, error);
-        if (status != RT_OK) {
-            rt_accel_destroy(top);
-            return status;
-        }
-        top->build_seconds = rt_wall_seconds() - start;
-    }
-    *out = top;
-    return RT_OK;
-}
-
-RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
-                             RtError *error) {
-    const RtStatus status = build_layers(spec, scene, threads, out, error);
-    const bool too_large = status == RT_NO_MEMORY && rt_memory_limit_was_reached();
-    return too_large && rt_thread_count(threads) > 1 ? build_layers(spec, scene, 1, out, error) : status;
-}
-
-RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
-                        RtError *error) {
-    return rt_spec_is_remote(spec) ? rt_remote_build(spec, scene, threads, out, error)
-                                   : rt_accel_build_here(spec, scene, threads, out, error);
-}
-
-RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out,
-                          RtError *error) {
-    RtSpec parsed;
-    *out = NULL;
-    RT_TRY(rt_spec_parse(spec, &parsed, error));
-    return rt_accel_build(&parsed, scene, threads, out, error);
-}
-
-RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error) {
-    return rt_accel_open_on(spec, scene, 0, out, error);
 }
 
 bool rt_accel_refuses(RtStatus status) {

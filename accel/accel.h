@@ -19,7 +19,7 @@
  * in `rays` and `hits` once, in the layer that answers it, and in `passed_on` in each overlay that should
  * have.
  *
- * Specs are parsed in spec.c and find their accelerators in registry.c; accel.c stacks layers and answers
+ * Specs are parsed in spec.c and find their accelerators in registry.c; accel.c has layers and
  * queries; plugin/ runs plugins in processes of their own. */
 #ifndef RT_ACCEL_ACCEL_H
 #define RT_ACCEL_ACCEL_H

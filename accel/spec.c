@@ -4,6 +4,8 @@
  * varying fastest. */
 #include "accel/accel.h"
 #include "accel/isa.h"
+#include "core/base/clock.h"
+#include "core/base/parallel.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -103,6 +105,34 @@ void rt_spec_format(const RtSpec *spec, char *out) {
                          RT_MAX_SPEC_CHARS - used);
         used = strlen(out);
     }
+}
+
+/* ---- building ---- */
+
+static RtStatus build_layers(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                             RtError *error) {
+    RtAccel *top = NULL;
+    double start = rt_wall_seconds();
+    *out = NULL;
+    RT_TRY(rt_spec_available(spec, error));
+    for (uint32_t i = spec->layer_count; i-- > 0;) {
+        const RtBuild what = {scene, spec->layers[i].values, threads, rt_accel_byte_limit(scene)};
+        RtStatus status = rt_accel_build_layer(spec->layers[i].ops, &what, top, &top, error);
+        if (status != RT_OK) {
+            rt_accel_destroy(top);
+            return status;
+        }
+        top->build_seconds = rt_wall_seconds() - start;
+    }
+    *out = top;
+    return RT_OK;
+}
+
+RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                             RtError *error) {
+    const RtStatus status = build_layers(spec, scene, threads, out, error);
+    const bool too_large = status == RT_NO_MEMORY && rt_memory_limit_was_reached();
+    return too_large && rt_thread_count(threads) > 1 ? build_layers(spec, scene, 1, out, error) : status;
 }
 
 /* ---- the best of several ---- */

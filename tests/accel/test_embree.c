@@ -90,16 +90,21 @@ RT_TEST(user_mode_counts_tests_where_it_is_asked_to) {
     assert_true(user.object_tests < brute.object_tests);
 }
 
+static RtScene sphere_at(float x, float radius, float distance) {
+    RtScene scene = begin_scene();
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(x, 0, 0), radius, error));
+    scene.camera.from = rt_vec3(x, 0, distance);
+    scene.camera.at = rt_vec3(x, 0, 0);
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
+}
+
 /* A sphere of radius 1, at 0 and far off: twice the thickness of a ray from 8 away, which is four times the
  * size, and 2^-21 of the largest coordinate. With 15/16 of either this fails. */
 RT_TEST(boxes_of_user_geometry_grow_by_their_bound) {
     for (int far = 0; far < 2; far++) {
         const float x = far ? 0x1p16f : 0;
-        OWNED_SCENE scene = begin_scene();
-        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(x, 0, 0), 1, error));
-        scene.camera.from = rt_vec3(x, 0, 2);
-        scene.camera.at = rt_vec3(x, 0, 0);
-        assert_ok(rt_scene_finish(&scene, error));
+        OWNED_SCENE scene = sphere_at(x, 1, 2);
         OWNED_ACCEL RtEmbree *embree = open_accel(&scene, "embree:mode=user");
         double thick = 0x1p-20 * 8, rounding = 0x1p-21 * ((double)x + 1), least = far ? 31.0 / 32 : 1;
         assert_true((double)embree->growth >= 2 * thick + least * rounding);
@@ -111,11 +116,7 @@ RT_TEST(boxes_of_user_geometry_grow_by_their_bound) {
 
 /* What remains for a scene that is hardly more than a point. */
 RT_TEST(boxes_of_user_geometry_grow_even_among_the_least_numbers) {
-    OWNED_SCENE scene = begin_scene();
-    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 0x1p-130f, error));
-    scene.camera.from = rt_vec3(0, 0, 0x1p-120f);
-    scene.camera.at = rt_vec3(0, 0, 0);
-    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_SCENE scene = sphere_at(0, 0x1p-130f, 0x1p-120f);
     OWNED_ACCEL RtEmbree *embree = open_accel(&scene, "embree:mode=user");
     assert_true((double)embree->growth >= 31.0 / 32 * 0x1p-100);
 }

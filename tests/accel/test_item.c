@@ -15,7 +15,8 @@ static void check_answered(const RtScene *scene) {
     OWNED_FRAME frame = trace("item+bvh", scene, true);
     const RtTally *tally = &frame.tallies[RT_RAY_PRIMARY];
     assert_int_equal(tally->passed_on, 0);
-    assert_int_equal(tally->extent_tests, 0);
+    if (scene->geometry.csg_count == 0)
+        assert_int_equal(tally->extent_tests, 0);       /* trees have boxes within */
     assert_int_equal(tally->object_tests, tally->hits); /* so each that hits makes one, and no other any */
 }
 
