@@ -182,6 +182,23 @@ static RtStatus lay_out(RtHierarchy *self, RtArena *memory, RtTree *tree, int th
     return RT_OK;
 }
 
+static RtTreeBuild *const methods[RT_TREE_METHOD_COUNT] = {
+    [RT_TREE_BINNED] = rt_tree_topdown,      [RT_TREE_SWEEP] = rt_tree_sweep,
+    [RT_TREE_LBVH] = rt_tree_lbvh,           [RT_TREE_PLOC] = rt_tree_ploc,
+    [RT_TREE_SPATIAL] = rt_tree_spatial,     [RT_TREE_AGGLOMERATIVE] = rt_tree_agglomerative,
+    [RT_TREE_INSERTION] = rt_tree_insertion, [RT_TREE_MEDIAN] = rt_tree_topdown,
+};
+
+RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
+                       RtError *error) {
+    *tree = (RtTree){.nodes = NULL};
+    RtStatus status = methods[options->method](tree, geometry, options, threads, error);
+    if (status == RT_OK)
+        status = rt_tree_reinsert(tree, options->reinsertion, options->batch, threads, error);
+    if (status != RT_OK) rt_tree_clear(tree);
+    return status;
+}
+
 RtStatus rt_hierarchy_build(RtHierarchy *self, RtArena *memory, const RtGeometry *geometry,
                             const RtTreeOptions *options, int threads, RtError *error) {
     RtTree tree;

@@ -18,17 +18,6 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-RtBox4 rt_refs_centers(const RtTreeRef *refs, uint32_t count) {
-    RtBox4 centers = rt_box4_empty();
-    for (uint32_t i = 0; i < count; i++)
-        centers = rt_box4_add_point(centers, rt_box4_center(rt_box4_load(&refs[i].box)));
-    return centers;
-}
-
-int rt_longest_axis(RtBox4 box) {
-    return rt_major_axis((RtVec3){{box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]}});
-}
-
 /* ---- bins ---- */
 
 enum { REFS_AHEAD = 32 }; /* prefetch distance, in references, of a sequential read */
@@ -279,35 +268,6 @@ uint32_t rt_split_binned(RtTreeRef *refs, uint32_t count, int bins, RtBox4 cente
     }
     memcpy(centers_of, sides, sizeof sides);
     return left;
-}
-
-static bool comes_before(const RtTreeRef *a, const RtTreeRef *b, int axis) {
-    float x = rt_box_center(a->box).at[axis], y = rt_box_center(b->box).at[axis];
-    return x < y || (x == y && a->id < b->id);
-}
-
-/* Quickselect (Hoare 1961): narrows the range that contains the boundary between the halves. */
-uint32_t rt_split_median(RtTreeRef *refs, uint32_t count) {
-    int axis = rt_longest_axis(rt_refs_centers(refs, count));
-    uint32_t half = (count + 1) / 2, first = 0, last = count - 1;
-    while (first < half && half <= last) {
-        RtTreeRef pivot = refs[first + (last - first) / 2];
-        uint32_t i = first, j = last;
-        for (;; i++, j--) {
-            while (comes_before(&refs[i], &pivot, axis)) i++;
-            while (comes_before(&pivot, &refs[j], axis)) j--;
-            if (i >= j) break;
-            RtTreeRef kept = refs[i];
-            refs[i] = refs[j];
-            refs[j] = kept;
-        }
-        /* refs[..j] do not come after the pivot, refs[j + 1..] not before it. */
-        if (half <= j)
-            last = j;
-        else
-            first = j + 1;
-    }
-    return half;
 }
 
 /* ---- on one thread ---- */

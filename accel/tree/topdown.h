@@ -11,16 +11,6 @@
 #define RT_ACCEL_TREE_TOPDOWN_H
 
 #include "accel/tree/tree.h"
-#include "core/base/box4.h"
-
-typedef struct RtTreeRef {
-    _Alignas(32) RtBox box; /* aligned, so that no reference straddles a cache line */
-    uint32_t id;
-} RtTreeRef;
-
-/* The box of all centres, and its longest axis. */
-RtBox4 rt_refs_centers(const RtTreeRef *refs, uint32_t count);
-int rt_longest_axis(RtBox4 box);
 
 /* The bins for a group of `count` references, where large groups have `bins`. Small groups gain little from
  * many, and most of the time is theirs. */
@@ -32,10 +22,6 @@ static inline uint32_t rt_bin_count(int bins, uint32_t count) {
  * sides get some. `centers` is the box of the centres; those of the sides go to centers_of[2]. A group of at
  * most so many references is split as a small group. Returns 0 where no plane separates the centres. */
 uint32_t rt_split_binned(RtTreeRef *refs, uint32_t count, int bins, RtBox4 centers, RtBox4 centers_of[2]);
-
-/* Moves the lower half of refs[0..count) to the front and returns its size, (count + 1) / 2: by centres along
- * the longest axis of the box of all centres, equal ones by id; count >= 1. */
-uint32_t rt_split_median(RtTreeRef *refs, uint32_t count);
 
 /* Builds subtrees, each in a run of nodes: its root, the left subtree, the right one. A subtree of n
  * references takes 2 n - 1 nodes, so neighbouring subtrees are independent. */

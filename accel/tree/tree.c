@@ -2,7 +2,6 @@
 /* Binary trees of references: the bound on their depth, leaves without nodes, and reductions. */
 #include "accel/tree/tree.h"
 
-#include "accel/tree/topdown.h"
 #include "core/base/parallel.h"
 
 #include <assert.h>
@@ -54,6 +53,48 @@ double rt_tree_cost(const RtTree *tree) {
         if (!rt_tree_is_leaf(tree, i)) sum += rt_box_half_area(tree->nodes[i].box);
     }
     return sum;
+}
+
+/* ---- references ---- */
+
+RtBox4 rt_refs_centers(const RtTreeRef *refs, uint32_t count) {
+    RtBox4 centers = rt_box4_empty();
+    for (uint32_t i = 0; i < count; i++)
+        centers = rt_box4_add_point(centers, rt_box4_center(rt_box4_load(&refs[i].box)));
+    return centers;
+}
+
+int rt_longest_axis(RtBox4 box) {
+    return rt_major_axis((RtVec3){{box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]}});
+}
+
+static bool comes_before(const RtTreeRef *a, const RtTreeRef *b, int axis) {
+    float x = rt_box_center(a->box).at[axis], y = rt_box_center(b->box).at[axis];
+    return x < y || (x == y && a->id < b->id);
+}
+
+/* Quickselect (Hoare 1961): narrows the range that contains the boundary between the halves. */
+uint32_t rt_split_median(RtTreeRef *refs, uint32_t count) {
+    int axis = rt_longest_axis(rt_refs_centers(refs, count));
+    uint32_t half = (count + 1) / 2, first = 0, last = count - 1;
+    while (first < half && half <= last) {
+        RtTreeRef pivot = refs[first + (last - first) / 2];
+        uint32_t i = first, j = last;
+        for (;; i++, j--) {
+            while (comes_before(&refs[i], &pivot, axis)) i++;
+            while (comes_before(&pivot, &refs[j], axis)) j--;
+            if (i >= j) break;
+            RtTreeRef kept = refs[i];
+            refs[i] = refs[j];
+            refs[j] = kept;
+        }
+        /* refs[..j] do not come after the pivot, refs[j + 1..] not before it. */
+        if (half <= j)
+            last = j;
+        else
+            first = j + 1;
+    }
+    return half;
 }
 
 /* ---- depth ---- */
@@ -225,23 +266,4 @@ RtStatus rt_tree_reduce(RtTree *tree, const RtReduction *reduction, RtArena *mem
     }
     reduce_top(&job, tree->root, 0, whole);
     return RT_OK;
-}
-
-/* ---- building ---- */
-
-static RtTreeBuild *const methods[RT_TREE_METHOD_COUNT] = {
-    [RT_TREE_BINNED] = rt_tree_topdown,      [RT_TREE_SWEEP] = rt_tree_sweep,
-    [RT_TREE_LBVH] = rt_tree_lbvh,           [RT_TREE_PLOC] = rt_tree_ploc,
-    [RT_TREE_SPATIAL] = rt_tree_spatial,     [RT_TREE_AGGLOMERATIVE] = rt_tree_agglomerative,
-    [RT_TREE_INSERTION] = rt_tree_insertion, [RT_TREE_MEDIAN] = rt_tree_topdown,
-};
-
-RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
-                       RtError *error) {
-    *tree = (RtTree){.nodes = NULL};
-    RtStatus status = methods[options->method](tree, geometry, options, threads, error);
-    if (status == RT_OK)
-        status = rt_tree_reinsert(tree, options->reinsertion, options->batch, threads, error);
-    if (status != RT_OK) rt_tree_clear(tree);
-    return status;
 }

@@ -8,6 +8,7 @@
 #ifndef RT_ACCEL_TREE_TREE_H
 #define RT_ACCEL_TREE_TREE_H
 
+#include "core/base/box4.h"
 #include "core/base/memory.h"
 #include "core/shape/geometry.h"
 
@@ -96,6 +97,21 @@ RtStatus rt_tree_limit_depth(RtTree *tree, RtError *error);
  * those of the objects. Only rt_tree_reduce, rt_tree_get_leaf and rt_tree_box still work. Does not remove
  * split references, whose boxes are their own. On failure the leaves are still there. */
 RtStatus rt_tree_drop_leaves(RtTree *tree, const RtBox *boxes, RtError *error);
+
+/* ---- references ---- */
+
+typedef struct RtTreeRef {
+    _Alignas(32) RtBox box; /* aligned, so that no reference straddles a cache line */
+    uint32_t id;
+} RtTreeRef;
+
+/* The box of all centres, and its longest axis. */
+RtBox4 rt_refs_centers(const RtTreeRef *refs, uint32_t count);
+int rt_longest_axis(RtBox4 box);
+
+/* Moves the lower half of refs[0..count) to the front and returns its size, (count + 1) / 2: by centres along
+ * the longest axis of the box of all centres, equal ones by id; count >= 1. */
+uint32_t rt_split_median(RtTreeRef *refs, uint32_t count);
 
 /* ---- building ---- */
 
