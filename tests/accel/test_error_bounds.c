@@ -72,7 +72,7 @@ RT_TEST(fitted_extents_are_inflated_by_their_rounding) {
     }
 }
 
-/* ---- spheres in lanes (accel/sphere_prefilter.h) ---- */
+/* ---- spheres in lanes (accel/batch.h) ---- */
 
 static bool passes_sphere(float x, float z, float radius) {
     float spheres[4 * RT_LANES] = {0};

@@ -339,7 +339,7 @@ RT_TEST(a_ray_that_begins_just_before_it_touches_a_sphere_hits_it_there) {
     assert_wide_hits(&scene, rays, 40, right);
 }
 
-/* ---- accel/sphere_prefilter.h ---- */
+/* ---- accel/batch.h ---- */
 
 /* A sphere that passes needlessly would be rejected if its radius were less by a small part of its distance.
  */

@@ -89,7 +89,7 @@ RT_TEST(no_triangle_is_hit_farther_off_than_its_bound_and_one_nearly_so) {
     if (!(most <= 7 && most >= RT_SHARE(3.5, 1))) fail_msg("the largest error is %g units", most);
 }
 
-/* In float32, |o x u| is off by less than 2^-21 |o| (accel/sphere_prefilter.h). */
+/* In float32, |o x u| is off by less than 2^-21 |o| (accel/batch.h). */
 RT_TEST(the_distance_of_a_sphere_in_lanes_is_off_by_less_than_its_bound) {
     RtRandom random = rt_random(8, 0);
     double most = 0;
