@@ -4,8 +4,8 @@
  * Times have intervals, counts are exact. A claim about times holds if it holds for all values within the
  * intervals, does not hold if it holds for none, and is undecided otherwise. It is undecided, too, with fewer
  * than RT_CLAIM_RAYS rays. Ratios of times, and the steps of a trend of times on one scene, are paired
- * (results/results.h). With many cells some interval misses by chance; so all intervals of tracing times in an
- * experiment's claims hold together in 95 % of all cases (rt_coverage_of_each, counting the cells of all
+ * (results/results.h). With many cells some interval misses by chance; so all intervals of tracing times in
+ * an experiment's claims hold together in 95 % of all cases (rt_coverage_of_each, counting the cells of all
  * claims). Readouts claim nothing and have 95 % each; so have times of builds and frames, whose single
  * measurements are not kept. The time of a single build has no interval and is taken as exact. A break-even
  * is the number of rays from which on an accelerator is ahead of the baseline, its build included; it is
