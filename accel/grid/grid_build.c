@@ -6,12 +6,12 @@
  * An object goes into all voxels that its box meets, or with overlap=exact into those of them that its
  * surface comes within `margin` of, found by bisecting the range of voxels that the box meets. Why surfaces
  * suffice: grid.c proves that the walk visits every voxel, on every level, whose three intervals contain the
- * thick ray at the t of a hit; accel/clipping.h, that the voxels of its q are among those and list the object.
- * A range is rejected only if none of its voxels comes near. `slack` adds to both distances, which only
- * lengthens lists. */
+ * thick ray at the t of a hit; accel/clipping.h, that the voxels of its q are among those and list the
+ * object. A range is rejected only if none of its voxels comes near. `slack` adds to both distances, which
+ * only lengthens lists. */
 #include "accel/grid/grid.h"
 
-#include "accel/mailbox.h"
+#include "accel/kernel.h"
 #include "core/base/elementary.h"
 
 #include <assert.h>
@@ -436,8 +436,7 @@ RtStatus rt_grid_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtValue *values = what->values;
     RtGrid *grid = (RtGrid *)accel;
     grid->box = g->box;
-    grid->mailbox = values[RT_GRID_MAILBOX].flag;
-    if (grid->mailbox) accel->scratch_bytes = rt_mailbox_bytes(g);
+    if (values[RT_GRID_MAILBOX].flag) accel->scratch_bytes = rt_mailbox_bytes(g);
     grid->surfaces = values[RT_GRID_OVERLAP].choice == RT_GRID_EXACT;
     grid->slack = values[RT_GRID_SLACK].f;
     if (g->object_count == 0) return RT_OK;
