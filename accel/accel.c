@@ -26,6 +26,8 @@ RtStatus rt_accel_build_layer(const RtAccelOps *ops, const RtBuild *what, RtAcce
     *accel = (RtAccel){.ops = ops,
                        .scene = what->scene,
                        .below = below,
+                       .kernels = ops->kernels,
+                       .scratch_bytes = ops->kernels ? ops->kernels->scratch_bytes : 0,
                        .exact = !below || below->exact,
                        .absolute = below && below->absolute,
                        .counts = !below || below->counts};

@@ -31,18 +31,21 @@
 #include "core/scene/scene.h"
 
 typedef struct RtAccelOps RtAccelOps;
+typedef struct RtKernels RtKernels;
 
 /* The first member of every accelerator's own struct. */
 typedef struct RtAccel {
     const RtAccelOps *ops;
-    const RtScene *scene;  /* borrowed */
-    struct RtAccel *below; /* owned; NULL for a base */
-    size_t scratch_bytes;  /* of a query: memory that is zeroed and 64-byte aligned. Set by its `build` */
-    bool exact;            /* its hits equal brute's bit for bit; false: judged by verdicts */
-    bool absolute;         /* not exact, and computes with absolute coordinates (exact/margin.h) */
-    bool counts;           /* its counts are the same on every machine, so counts.csv has them */
-    double build_seconds;  /* wall seconds to build it and all layers below. Set by rt_accel_build */
-    RtTally build_tally;   /* hit functions called while building; not part of tracing */
+    const RtScene *scene;     /* borrowed */
+    struct RtAccel *below;    /* owned; NULL for a base */
+    const RtKernels *kernels; /* of its ops, or those that its `build` has chosen */
+    size_t scratch_bytes;     /* of a query: memory that is zeroed and 64-byte aligned; as its kernels say, or
+                                 its `build` */
+    bool exact;               /* its hits equal brute's bit for bit; false: judged by verdicts */
+    bool absolute;            /* not exact, and computes with absolute coordinates (exact/margin.h) */
+    bool counts;              /* its counts are the same on every machine, so counts.csv has them */
+    double build_seconds;     /* wall seconds to build it and all layers below. Set by rt_accel_build */
+    RtTally build_tally;      /* hit functions called while building; not part of tracing */
     RtArena memory; /* of the structure: `build` allocates from it, and need not check; freed with it */
 } RtAccel;
 
@@ -91,20 +94,19 @@ typedef struct RtScratch {
     RtCrossing *crossings; /* buffer of hit functions (rt_hit_ray) */
 } RtScratch;
 
-/* The four kernels. rays[0..count) are valid (rt_ray_is_valid). scratch[0] belongs to the layer; those of the
- * layers below follow. Answers go to hits[0..count) or occluders[0..count). Counts are added to
+/* A kernel. rays[0..count) are valid (rt_ray_is_valid). scratch[0] belongs to the layer; those of the layers
+ * below follow. Answers go to hits[0..count) or occluders[0..count). Counts are added to
  * tallies[RT_RAY_KIND_COUNT], by the kind of each ray. An occluder is any object that the ray hits,
  * RT_NO_OBJECT if there is none, or RT_UNNAMED_OBJECT if the accelerator knows only that there is one. */
 #define RT_UNNAMED_OBJECT (UINT32_MAX - 1)
+typedef void RtKernel(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                      RtHit *hits, uint32_t *occluders, RtTally *tallies);
 
-typedef void RtNearestKernel(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             RtHit *hits);
-typedef void RtOccludedKernel(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                              uint32_t *occluders);
-typedef void RtNearestCounted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                              RtHit *hits, RtTally *tallies);
-typedef void RtOccludedCounted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
-                               size_t count, uint32_t *occluders, RtTally *tallies);
+/* The kernels of an accelerator, as accel/kernel.h defines them. */
+struct RtKernels {
+    RtKernel *nearest, *occluded, *nearest_counted, *occluded_counted;
+    size_t scratch_bytes; /* of a query */
+};
 
 /* A node or voxel of a structure. */
 typedef struct RtBoxView {
@@ -192,10 +194,7 @@ struct RtAccelOps {
     /* Optional: frees what the accelerator owns, except its own struct and the layer below. */
     void (*destroy)(RtAccel *accel);
 
-    RtNearestKernel *nearest;
-    RtOccludedKernel *occluded;
-    RtNearestCounted *nearest_counted;
-    RtOccludedCounted *occluded_counted;
+    const RtKernels *kernels; /* NULL: `build` chooses them (accel/isa.h) */
 
     /* Optional, both or none: set up and tear down resources in the scratch memory, before the first ray and
      * after the last. If `open` fails, `close` is not called. */
@@ -305,9 +304,6 @@ void rt_spec_format(const RtSpec *spec, char *out);
 /* Whether `text` has the form of an RtBestOf, NAME:WORD, which no spec has. */
 bool rt_best_is(const char *text);
 
-/* The accelerator's RtBestOf of that name, or NULL. */
-const RtBestOf *rt_best_find(const RtAccelOps *ops, const char *name);
-
 /* Expands `text` ("embree:best") to specs: specs[0..*count) are available here, specs[*count..*all) on other
  * machines. RT_BAD_INPUT if there is no such name, RT_NOT_AVAILABLE if no spec is available. */
 RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS], size_t *count,
@@ -374,15 +370,10 @@ void rt_query_begin(RtQuery *query);
  * NULL. */
 static inline void rt_trace_stream(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
                                    size_t count, RtHit *hits, uint32_t *occluders, RtTally *tallies) {
-    const RtAccelOps *ops = accel->ops;
-    if (hits && tallies)
-        ops->nearest_counted(accel, scratch, rays, count, hits, tallies);
-    else if (hits)
-        ops->nearest(accel, scratch, rays, count, hits);
-    else if (tallies)
-        ops->occluded_counted(accel, scratch, rays, count, occluders, tallies);
-    else
-        ops->occluded(accel, scratch, rays, count, occluders);
+    const RtKernels *k = accel->kernels;
+    RtKernel *kernel =
+        tallies ? (hits ? k->nearest_counted : k->occluded_counted) : (hits ? k->nearest : k->occluded);
+    kernel(accel, scratch, rays, count, hits, occluders, tallies);
 }
 
 /* Nearest hits of a stream of valid rays: timed if `tallies` is NULL, otherwise counted in

@@ -142,7 +142,7 @@ RT_KERNEL void rt_batch_begin(RtBatch *batch, const RtGeometry *g, const RtScrat
             }                                                                                                \
         }                                                                                                    \
     }                                                                                                        \
-    RT_DEFINE_STREAM_KERNELS(trace_batches)                                                                  \
-    RT_DEFINE_KERNEL_TABLE(name, sizeof(RtBatch))
+    RT_DEFINE_STREAM_KERNELS(trace_batches, sizeof(RtBatch))                                                 \
+    RT_DEFINE_KERNEL_TABLE(name)
 
 #endif

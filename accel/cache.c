@@ -46,27 +46,28 @@ RT_KERNEL uint32_t find_occluder(const RtAccel *self, const RtScratch *scratch, 
     }
     RT_COUNT(tally, passed_on, 1);
     RT_OBSERVE(tally, .kind = RT_TRACED_PASSED_ON, .what = self->ops->name);
-    rt_hand_down_occluded(self, scratch, ray, 1, &occluder, tallies);
+    rt_hand_down(self, scratch, ray, 1, NULL, &occluder, tallies);
     if (occluder < scene->geometry.object_count) *last = occluder;
     return occluder;
 }
 
-/* Runs of rays of other kinds are handed down. */
-RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            uint32_t *occluders, RtTally *tallies) {
-    for (size_t i = 0, next; i < count; i = next) {
+/* Queries for nearest hits, and runs of rays of other kinds, are handed down. */
+RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                     RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
+    (void)counted;
+    if (!any) rt_hand_down(accel, scratch, rays, count, hits, NULL, tallies);
+    for (size_t i = 0, next; any && i < count; i = next) {
         next = i + 1;
         if (rays[i].kind == RT_RAY_SHADOW) {
             occluders[i] = find_occluder(accel, scratch, &rays[i], tallies);
             continue;
         }
         while (next < count && rays[next].kind != RT_RAY_SHADOW) next++;
-        rt_hand_down_occluded(accel, scratch, rays + i, next - i, occluders + i, tallies);
+        rt_hand_down(accel, scratch, rays + i, next - i, NULL, occluders + i, tallies);
     }
 }
 
-RT_DEFINE_BOTH(occluded, uint32_t, occluded_all)
-RT_DEFINE_HANDED_DOWN(nearest, RtHit)
+RT_DEFINE_STREAM_KERNELS(trace, 0)
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     (void)accel;
@@ -80,7 +81,7 @@ const RtAccelOps rt_cache_ops = {
     .kinds = 1u << RT_RAY_SHADOW,
     .bytes = sizeof(RtAccel),
     .build = build,
-    RT_KERNEL_OPS,
+    .kernels = &kernels,
     .begin = begin,
     .describe = describe,
 };

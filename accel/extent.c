@@ -200,15 +200,10 @@ void rt_extent_fit(RtExtentSet *set, uint32_t index, const RtGroup *group) {
 }
 
 double rt_extent_half_area(const RtExtentSet *set, uint32_t index, const RtBox *box) {
-    switch (set->kind) {
-    case RT_EXTENT_BOX: return rt_box_half_area(*box);
-    case RT_EXTENT_SPHERE:
-        return 2 * 3.14159265358979323846 * set->balls[index].radius * set->balls[index].radius;
-    case RT_EXTENT_OBB: return oriented_half_area(&set->oriented[index]);
-    case RT_EXTENT_SLABS:
-    case RT_EXTENT_KIND_COUNT: break;
-    }
-    return NAN;
+    if (set->kind == RT_EXTENT_BOX) return rt_box_half_area(*box);
+    if (set->kind == RT_EXTENT_OBB) return oriented_half_area(&set->oriented[index]);
+    if (set->kind == RT_EXTENT_SLABS) return NAN;
+    return 2 * 3.14159265358979323846 * set->balls[index].radius * set->balls[index].radius;
 }
 
 /* ---- checking ---- */

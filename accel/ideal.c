@@ -67,7 +67,7 @@ const RtAccelOps rt_ideal_ops = {
                "object tests",
     .paper = "none: a reference",
     .bytes = sizeof(Ideal),
-    RT_KERNEL_OPS,
+    .kernels = &kernels,
     .describe = describe,
     .validate = validate,
     .learn = learn,

@@ -64,27 +64,3 @@ RtStatus rt_isa_best_available(RtError *error) {
 RtStatus rt_isa_available(RtValue value, RtError *error) {
     return available(rt_isa_asked(value), error);
 }
-
-static const RtKernels *kernels_of(const RtAccel *accel) {
-    return ((const RtIsaAccel *)accel)->kernels;
-}
-
-void rt_isa_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                    RtHit *hits) {
-    kernels_of(accel)->nearest(accel, scratch, rays, count, hits);
-}
-
-void rt_isa_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                     uint32_t *occluders) {
-    kernels_of(accel)->occluded(accel, scratch, rays, count, occluders);
-}
-
-void rt_isa_nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            RtHit *hits, RtTally *tallies) {
-    kernels_of(accel)->nearest_counted(accel, scratch, rays, count, hits, tallies);
-}
-
-void rt_isa_occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             uint32_t *occluders, RtTally *tallies) {
-    kernels_of(accel)->occluded_counted(accel, scratch, rays, count, occluders, tallies);
-}

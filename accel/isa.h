@@ -4,8 +4,8 @@
  *
  * Such an accelerator NAME has its kernels in accel/NAME/NAME_kernels.c, which ends with a table of them
  * (RT_DEFINE_KERNEL_TABLE in accel/kernel.h). CMakeLists.txt compiles it three times, with RT_ISA portable,
- * avx2 and avx512, and on processors other than x86 once, with RT_ISA portable. Its own struct begins with an
- * RtIsaAccel, whose kernels `build` sets to RT_KERNELS_FOR(NAME, isa); RT_ISA_OPS are its queries. */
+ * avx2 and avx512, and on processors other than x86 once, with RT_ISA portable. Its `build` chooses
+ * RT_KERNELS_FOR(NAME, isa). */
 #ifndef RT_ACCEL_ISA_H
 #define RT_ACCEL_ISA_H
 
@@ -29,26 +29,17 @@ const char *rt_isa_name(RtIsa isa);
 /* RT_OK, or RT_NOT_AVAILABLE where this build is for a better machine. */
 RtStatus rt_isa_best_available(RtError *error);
 
-/* The kernels for one instruction set. */
-typedef struct RtKernels {
-    RtNearestKernel *nearest;
-    RtOccludedKernel *occluded;
-    RtNearestCounted *nearest_counted;
-    RtOccludedCounted *occluded_counted;
-    size_t scratch_bytes; /* of a query */
-} RtKernels;
-
 /* The name of a table in a file that is compiled for the instruction set RT_ISA. */
 #define RT_OF_ISA(name)             RT_OF_ISA_NAMED(name, RT_ISA)
 #define RT_OF_ISA_NAMED(name, isa)  RT_OF_ISA_JOINED(name, isa)
 #define RT_OF_ISA_JOINED(name, isa) rt_##name##_##isa
 
 #define RT_DECLARE_KERNELS(name)                                                                             \
-    extern const RtKernels rt_##name##_portable, rt_##name##_avx2, rt_##name##_avx512
+    extern const RtKernels *const rt_##name##_portable, *const rt_##name##_avx2, *const rt_##name##_avx512
 
 /* Those of an accelerator for an RtIsa that runs. A build for one instruction set alone, as by the option
  * RT_KERNELS=native, has RT_ONLY_ISA. */
-#define RT_KERNELS_OF(name, isa) (&rt_##name##_##isa)
+#define RT_KERNELS_OF(name, isa) rt_##name##_##isa
 #if defined(RT_ONLY_ISA)
 #define RT_KERNELS_FOR(name, isa) ((void)(isa), RT_EXPAND(RT_KERNELS_OF, name, RT_ONLY_ISA))
 #define RT_EXPAND(macro, ...)     macro(__VA_ARGS__)
@@ -59,27 +50,11 @@ typedef struct RtKernels {
                             : RT_KERNELS_OF(name, portable))
 #endif
 
-/* What an accelerator that has them begins with. */
-typedef struct RtIsaAccel {
-    RtAccel base;
-    const RtKernels *kernels;
-} RtIsaAccel;
-
 /* For `build`: sets the kernels. */
 static inline void rt_isa_use(RtAccel *accel, const RtKernels *kernels) {
-    ((RtIsaAccel *)accel)->kernels = kernels;
+    accel->kernels = kernels;
     accel->scratch_bytes = kernels->scratch_bytes;
 }
-
-/* For RtAccelOps: hand over to the kernels. */
-RtNearestKernel rt_isa_nearest;
-RtOccludedKernel rt_isa_occluded;
-RtNearestCounted rt_isa_nearest_counted;
-RtOccludedCounted rt_isa_occluded_counted;
-
-#define RT_ISA_OPS                                                                                           \
-    .nearest = rt_isa_nearest, .occluded = rt_isa_occluded, .nearest_counted = rt_isa_nearest_counted,       \
-    .occluded_counted = rt_isa_occluded_counted
 
 /* ---- as parameters ---- */
 

@@ -8,13 +8,14 @@
  *
  * which improves *best, and may return as soon as rt_test_object or rt_test_all returns true. After inlining,
  * `any` and whether `tally` is NULL are constants. RT_DEFINE_KERNELS(Type, search) then defines
- * nearest_timed, nearest_counted, occluded_timed and occluded_counted, and RT_KERNEL_OPS enters them in the
- * table of operations. */
+ * the table `kernels` of its operations. */
 #ifndef RT_ACCEL_KERNEL_H
 #define RT_ACCEL_KERNEL_H
 
 #include "accel/accel.h"
 #include "core/base/observe.h"
+
+#include <string.h>
 
 #define RT_KERNEL static inline __attribute__((always_inline))
 
@@ -44,6 +45,47 @@ RT_KERNEL bool rt_take_test(const RtGeometry *geometry, uint32_t id, float t, bo
                             RtTally *tally) {
     rt_count_test(geometry, id, tally);
     return !isnan(t) && rt_take_hit((RtHit){t, id}, any, best, tally);
+}
+
+/* ---- lists of objects ---- */
+
+/* For structures that may list an object more than once: Kirk & Arvo 1991, Improved Ray Tagging for
+ * Voxel-Based Ray Tracing, Graphics Gems II. A mailbox is part of a query's scratch memory, which is zeroed
+ * at first, so each thread has its own. It stores for every object the number of the last ray that tested it.
+ */
+typedef struct RtMailbox {
+    uint32_t ray;
+    uint32_t last[]; /* [object_count] */
+} RtMailbox;
+
+static inline size_t rt_mailbox_bytes(const RtGeometry *geometry) {
+    return sizeof(RtMailbox) + geometry->object_count * sizeof(uint32_t);
+}
+
+/* Call before each ray. The mailbox may be NULL. */
+RT_KERNEL void rt_mailbox_next_ray(RtMailbox *mailbox, const RtGeometry *geometry) {
+    if (!mailbox || ++mailbox->ray != 0) return;
+    memset(mailbox->last, 0, geometry->object_count * sizeof(uint32_t));
+    mailbox->ray = 1;
+}
+
+/* Tests the objects ids[0..count), except those that this ray has already tested, as `mailbox` (or NULL)
+ * knows. Returns true if the search is over. */
+RT_KERNEL bool rt_test_list(const RtGeometry *geometry, RtMailbox *mailbox, const uint32_t *ids,
+                            uint32_t count, const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t id = ids[i];
+        if (mailbox) {
+            if (mailbox->last[id] == mailbox->ray) {
+                RT_COUNT(tally, repeats_avoided, 1);
+                RT_OBSERVE(tally, .kind = RT_TRACED_REPEAT_AVOIDED, .index = id);
+                continue;
+            }
+            mailbox->last[id] = mailbox->ray;
+        }
+        if (rt_test_object(geometry, id, ray, any, best, tally)) return true;
+    }
+    return false;
 }
 
 /* Tests every object, shape by shape, each in ascending order of ids. This defines the right answer. Compiled
@@ -79,37 +121,29 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
     return rt_minf(best->t, ray->tmax);
 }
 
-/* The kernels defined by an RT_DEFINE_..._KERNELS macro, as members of RtAccelOps. */
-#define RT_KERNEL_OPS                                                                                        \
-    .nearest = nearest_timed, .occluded = occluded_timed, .nearest_counted = nearest_counted,                \
-    .occluded_counted = occluded_counted
-
-/* The four kernels from a function that traces a whole stream,
+/* The table `kernels`, with `bytes` of scratch memory for a query, from a function that traces a whole
+ * stream,
  *
  *     void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
  *                RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted);
  *
  * Answers go to `hits`, or to `occluders` if `any`; the other pointer is NULL, and so is `tallies` if not
  * `counted`. After inlining, `any` and `counted` are constants. */
-#define RT_DEFINE_STREAM_KERNELS(trace)                                                                      \
-    static void nearest_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,             \
-                              size_t count, RtHit *hits) {                                                   \
-        trace(accel, scratch, rays, count, hits, NULL, NULL, false, false);                                  \
-    }                                                                                                        \
-    static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,           \
-                                size_t count, RtHit *hits, RtTally *tallies) {                               \
-        trace(accel, scratch, rays, count, hits, NULL, tallies, false, true);                                \
-    }                                                                                                        \
-    static void occluded_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
-                               size_t count, uint32_t *occluders) {                                          \
-        trace(accel, scratch, rays, count, NULL, occluders, NULL, true, false);                              \
-    }                                                                                                        \
-    static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
-                                 size_t count, uint32_t *occluders, RtTally *tallies) {                      \
-        trace(accel, scratch, rays, count, NULL, occluders, tallies, true, true);                            \
+#define RT_DEFINE_STREAM_KERNELS(trace, bytes)                                                               \
+    RT_DEFINE_KERNEL(nearest_timed, trace, false, false)                                                     \
+    RT_DEFINE_KERNEL(nearest_counted, trace, false, true)                                                    \
+    RT_DEFINE_KERNEL(occluded_timed, trace, true, false)                                                     \
+    RT_DEFINE_KERNEL(occluded_counted, trace, true, true)                                                    \
+    static const RtKernels kernels = {nearest_timed, occluded_timed, nearest_counted, occluded_counted,      \
+                                      bytes};
+#define RT_DEFINE_KERNEL(name, trace, any, counted)                                                          \
+    static void name(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,        \
+                     RtHit *hits, uint32_t *occluders, RtTally *tallies) {                                   \
+        trace(accel, scratch, rays, count, (any) ? NULL : hits, (any) ? occluders : NULL,                    \
+              (counted) ? tallies : NULL, any, counted);                                                     \
     }
 
-/* The four kernels from a search for one ray. */
+/* The same from a search for one ray; `build` sets the bytes of scratch memory, if any. */
 #define RT_DEFINE_KERNELS(Type, search)                                                                      \
     RT_KERNEL void search_each(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
                                size_t count, RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any,   \
@@ -123,39 +157,19 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
             rt_put_answer(&best, i, any, hits, occluders, tally);                                            \
         }                                                                                                    \
     }                                                                                                        \
-    RT_DEFINE_STREAM_KERNELS(search_each)
+    RT_DEFINE_STREAM_KERNELS(search_each, 0)
 
-/* For accelerators with kernels for several instruction sets (accel/isa.h): defines the table of the kernels
- * defined by an RT_DEFINE_..._KERNELS macro, and the bytes of scratch memory that they need. */
-#define RT_DEFINE_KERNEL_TABLE(name, bytes)                                                                  \
-    const RtKernels RT_OF_ISA(name) = {nearest_timed, occluded_timed, nearest_counted, occluded_counted,     \
-                                       bytes}
+/* For accelerators with kernels for several instruction sets (accel/isa.h): names the table `kernels`. */
+#define RT_DEFINE_KERNEL_TABLE(name)                                                                         \
+    extern const RtKernels *const RT_OF_ISA(name);                                                           \
+    const RtKernels *const RT_OF_ISA(name) = &kernels
 
 /* ---- overlays ---- */
 
-/* Hand a stream of rays down to the layer below. `tallies` may be NULL. */
-RT_KERNEL void rt_hand_down_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
-                                    size_t count, RtHit *hits, RtTally *tallies) {
-    rt_trace_stream(accel->below, scratch + 1, rays, count, hits, NULL, tallies);
+/* Hands a stream of rays down to the layer below, for answers as of rt_trace_stream. */
+RT_KERNEL void rt_hand_down(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                            RtHit *hits, uint32_t *occluders, RtTally *tallies) {
+    rt_trace_stream(accel->below, scratch + 1, rays, count, hits, occluders, tallies);
 }
-
-RT_KERNEL void rt_hand_down_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
-                                     size_t count, uint32_t *occluders, RtTally *tallies) {
-    rt_trace_stream(accel->below, scratch + 1, rays, count, NULL, occluders, tallies);
-}
-
-/* Expands the function `all`, which answers a query for a stream, into the timed and the counted kernel. */
-#define RT_DEFINE_BOTH(query, Answer, all)                                                                   \
-    static void query##_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,             \
-                              size_t count, Answer *answers) {                                               \
-        all(accel, scratch, rays, count, answers, NULL);                                                     \
-    }                                                                                                        \
-    static void query##_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,           \
-                                size_t count, Answer *answers, RtTally *tallies) {                           \
-        all(accel, scratch, rays, count, answers, tallies);                                                  \
-    }
-
-/* The two kernels of a query that an overlay hands down for every ray. */
-#define RT_DEFINE_HANDED_DOWN(query, Answer) RT_DEFINE_BOTH(query, Answer, rt_hand_down_##query)
 
 #endif

@@ -19,6 +19,14 @@ static size_t layer_length(const char *text) {
     return length;
 }
 
+/* The RtBestOf of that name, or NULL. */
+static const RtBestOf *find_best(const RtAccelOps *ops, const char *name) {
+    for (size_t i = 0; i < ops->best_count; i++) {
+        if (strcmp(ops->bests[i].name, name) == 0) return &ops->bests[i];
+    }
+    return NULL;
+}
+
 static RtStatus parse_layer(const char *text, size_t chars, RtSpecLayer *layer, RtError *error) {
     char copy[RT_MAX_SPEC_CHARS], what[RT_MAX_NAME + 16];
     size_t name_chars = strcspn(text, ":+");
@@ -33,7 +41,7 @@ static RtStatus parse_layer(const char *text, size_t chars, RtSpecLayer *layer, 
     char *params = strchr(copy, ':');
     if (params) *params++ = '\0';
     RT_TRY(rt_accel_find(copy, &layer->ops, error));
-    if (params && rt_best_find(layer->ops, params))
+    if (params && find_best(layer->ops, params))
         return rt_fail(error, RT_BAD_INPUT,
                        "'%s:%s' is the fastest of several settings: it can only be a baseline, as in "
                        "`raytally bench --baseline %s:%s`",
@@ -137,13 +145,6 @@ RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threa
 
 /* ---- the best of several ---- */
 
-const RtBestOf *rt_best_find(const RtAccelOps *ops, const char *name) {
-    for (size_t i = 0; i < ops->best_count; i++) {
-        if (strcmp(ops->bests[i].name, name) == 0) return &ops->bests[i];
-    }
-    return NULL;
-}
-
 bool rt_best_is(const char *text) {
     const char *colon = strchr(text, ':');
     return colon && colon > text && colon[1] && !strpbrk(text, "=,+");
@@ -185,7 +186,7 @@ RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHA
     const RtAccelOps *ops;
     snprintf(name, sizeof name, "%.*s", (int)strcspn(text, ":"), text);
     RT_TRY(rt_accel_find(name, &ops, error));
-    const RtBestOf *best = rt_best_is(text) ? rt_best_find(ops, strchr(text, ':') + 1) : NULL;
+    const RtBestOf *best = rt_best_is(text) ? find_best(ops, strchr(text, ':') + 1) : NULL;
     if (!best) return fail_unknown(ops, text, error);
     char spec[RT_MAX_SPEC_CHARS];
     *count = *all = 0;

@@ -5,7 +5,7 @@
 # stack (which SIMD code addresses by %rbp). Nor may it call one called ..._counted, which counts as an addition.
 # The functions called ..._counted must: the counted kernels of each file show that this script would detect it. Nor may a
 # timed kernel test for an observer (core/base/observe.h): it may not name rt_trace_observer, as counted kernels do. A file
-# without timed kernels (isa.c, which passes rays on to the kernels of an instruction set) must count nothing.
+# without timed kernels must count nothing.
 # For optimised x86-64 builds; otherwise it is skipped (exit code 77).
 set -eu
 

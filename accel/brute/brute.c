@@ -4,28 +4,27 @@
  * other scalar structures. With lanes=16, the default, it tests many objects and many rays at a time
  * (brute_kernels.c), because every verification waits for it. Both return the same answers and counts, and a
  * test compares them. */
-#include "accel/brute/brute.h"
+#include "accel/isa.h"
 #include "accel/kernel.h"
+
+RT_DECLARE_KERNELS(brute);
 
 #define PARAMS(X) X(PARAM_LANES, RT_LANES_PARAM("spheres or triangles"))
 
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
-RT_KERNEL void search(const RtIsaAccel *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
+RT_KERNEL void search(const RtAccel *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
                       RtTally *tally) {
     (void)scratch;
-    rt_test_all(&self->base.scene->geometry, ray, any, best, tally);
+    rt_test_all(&self->scene->geometry, ray, any, best, tally);
 }
 
-RT_DEFINE_KERNELS(RtIsaAccel, search)
-
-static const RtKernels one_lane = {RT_KERNEL_OPS};
+RT_DEFINE_KERNELS(RtAccel, search)
 
 static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
-    bool in_lanes = rt_has_lanes(what->values[PARAM_LANES]);
     (void)error;
-    rt_isa_use(accel, in_lanes ? RT_KERNELS_FOR(brute, rt_isa_best()) : &one_lane);
+    if (rt_has_lanes(what->values[PARAM_LANES])) rt_isa_use(accel, RT_KERNELS_FOR(brute, rt_isa_best()));
     return RT_OK;
 }
 
@@ -40,8 +39,8 @@ const RtAccelOps rt_brute_ops = {
     .summary = "tests every object for every ray: no structure; defines the correct answer",
     .paper = "Whitted 1980, An Improved Illumination Model for Shaded Display, CACM 23(6)",
     RT_PARAMS_OF(params),
-    .bytes = sizeof(RtIsaAccel),
+    .bytes = sizeof(RtAccel),
     .build = build,
-    RT_ISA_OPS,
+    .kernels = &kernels,
     .describe = describe,
 };

@@ -12,7 +12,7 @@
  * The same counts: a ray meets objects shape by shape in the order of RT_SHAPES, by ascending id, as in
  * rt_test_all, so it has tested all objects up to the one at which it stops. */
 #include "accel/batch.h"
-#include "accel/brute/brute.h"
+#include "accel/isa.h"
 #include "accel/watertight.h"
 
 enum { SPHERE = sizeof(RtSphere) / sizeof(float), TRIANGLE = sizeof(RtTriangle) / sizeof(float) };

@@ -10,9 +10,7 @@
  *
  * Counting: an extent test per box tested, including the root's; a step per node visited. */
 #include "accel/bvh/bvh.h"
-
 #include "accel/clipping.h"
-#include "accel/mailbox.h"
 
 #define PARAMS(X)                                                                                            \
     X(PARAM_BUILD, "build", RT_CHOICE("binned", RT_TREE_METHODS),                                            \
@@ -65,8 +63,8 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
                                    .reinsertion = (uint32_t)values[PARAM_REINSERTION].i,
                                    .batch = 1};
     RT_TRY(rt_hierarchy_build(&self->hierarchy, &accel->memory, geometry, &options, what->threads, error));
-    self->mailbox = values[PARAM_MAILBOX].flag && self->hierarchy.split_refs;
-    if (self->mailbox) accel->scratch_bytes = rt_mailbox_bytes(geometry);
+    if (values[PARAM_MAILBOX].flag && self->hierarchy.split_refs)
+        accel->scratch_bytes = rt_mailbox_bytes(geometry);
     return RT_OK;
 }
 
@@ -144,7 +142,7 @@ RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray
     if (!self->hierarchy.split_refs) {
         walk(self, NULL, ray, any, best, tally);
     } else if (rt_dir_is_ordinary(ray->dir[ray->kz])) {
-        RtMailbox *mailbox = self->mailbox ? scratch : NULL;
+        RtMailbox *mailbox = self->base.scratch_bytes > 0 ? scratch : NULL;
         rt_mailbox_next_ray(mailbox, g);
         walk(self, mailbox, ray, any, best, tally);
     } else {
@@ -175,7 +173,7 @@ const RtAccelOps rt_bvh_ops = {
     RT_PARAMS_OF(params),
     .bytes = sizeof(RtBvh),
     .build = build,
-    RT_KERNEL_OPS,
+    .kernels = &kernels,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

@@ -8,7 +8,6 @@
 typedef struct RtBvh {
     RtAccel base;
     RtHierarchy hierarchy; /* binary */
-    bool mailbox;          /* for split references */
 } RtBvh;
 
 #endif

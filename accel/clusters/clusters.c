@@ -198,7 +198,7 @@ const RtAccelOps rt_clusters_ops = {
     RT_PARAMS_OF(params),
     .bytes = sizeof(RtClusters),
     .build = build,
-    RT_KERNEL_OPS,
+    .kernels = &kernels,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

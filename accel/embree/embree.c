@@ -29,7 +29,6 @@
 #include "core/base/memory.h"
 #include "core/base/simd_across.h"
 
-#include <assert.h>
 #include <string.h>
 
 #if defined(__x86_64__)
@@ -263,7 +262,7 @@ RT_KERNEL void trace_batch(const RtEmbree *self, Batch *batch, Context *context,
 
 RT_KERNEL void search_lanes(const RtEmbreeSlot *slot, const void *context, uint32_t primitive,
                             const int *valid, Word *rays, unsigned lanes, bool any, bool counted) {
-    const RtGeometry *geometry = &slot->self->isa.base.scene->geometry;
+    const RtGeometry *geometry = &slot->self->base.scene->geometry;
     const Trace *trace = context;
     uint32_t id = slot->ids[primitive];
     for (unsigned i = 0; i < lanes; i++) {
@@ -316,8 +315,7 @@ RT_KERNEL void test_lanes(const RtEmbreeSlot *slot, const void *context, uint32_
     for (unsigned i = 0; i < lanes; i++) {
         float t;
         if (!valid[i]) continue;
-        if (!lane_hit(&slot->self->isa.base.scene->geometry, slot->ids[primitive], context, rays, lanes, i,
-                      &t))
+        if (!lane_hit(&slot->self->base.scene->geometry, slot->ids[primitive], context, rays, lanes, i, &t))
             continue;
         word_at(rays, lanes, FIELD_TFAR, i)->f = any ? -INFINITY : t;
         if (any) continue;
@@ -360,14 +358,14 @@ static Trace begin_trace(const RtEmbree *self, const RtScratch *scratch, bool co
 
 /* Whether Embree proposes all objects that this ray hits (embree.h). |dir| is at most 2^17 * shrink. */
 RT_KERNEL bool is_in_reach(const RtEmbree *self, const RtRay *ray, double shrink) {
-    return rt_thickness(ray->org, &self->isa.base.scene->geometry.box) <= self->max_thickness &&
+    return rt_thickness(ray->org, &self->base.scene->geometry.box) <= self->max_thickness &&
            0x1p-150 * 0x1p17 * shrink <= 0.25 * (double)self->growth;
 }
 
 /* Writes a ray to the batch; one out of reach is answered at once, and is inactive in the batch. */
 RT_KERNEL void put_search(const RtEmbree *self, Batch *batch, unsigned lanes, size_t i, const RtRay *ray,
                           RtCrossing *crossings, bool any, RtTally *tally) {
-    const RtGeometry *geometry = &self->isa.base.scene->geometry;
+    const RtGeometry *geometry = &self->base.scene->geometry;
     double stretch = stretch_of(ray->dir);
     Search *search = &batch->searches[i];
     rt_hit_ray(&search->ray, geometry, ray, crossings);
@@ -561,29 +559,17 @@ RT_KERNEL void answer_native(const RtEmbree *self, const RtScratch *scratch, con
         }                                                                                                    \
     } while (0)
 
-/* Counts rays and hits from the answers, which are either hits or occluders. */
-RT_KERNEL void count_answers(const RtRay *rays, size_t count, const RtHit *hits, const uint32_t *occluders,
-                             RtTally *tallies) {
-    assert(hits || occluders);
-    for (size_t i = 0; i < count; i++) {
-        uint32_t object = hits ? hits[i].object : occluders[i];
-        RT_COUNT(&tallies[rays[i].kind], rays, 1);
-        RT_COUNT(&tallies[rays[i].kind], hits, object != RT_NO_OBJECT);
-    }
-}
-
 RT_KERNEL void answer_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                           RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
     const RtEmbree *self = (const RtEmbree *)accel;
-    (void)any;
     if (self->user)
         BY_QUERY(self->query, answer_user, self, scratch, rays, count, hits, occluders, tallies);
     else
         BY_QUERY(self->query, answer_native, self, scratch, rays, count, hits, occluders);
-    if (counted) count_answers(rays, count, hits, occluders, tallies);
+    for (size_t i = 0; counted && i < count; i++)
+        rt_count_answer((any ? occluders[i] : hits[i].object) != RT_NO_OBJECT, &tallies[rays[i].kind]);
 }
 
-RT_DEFINE_STREAM_KERNELS(answer_all)
+RT_DEFINE_STREAM_KERNELS(answer_all, sizeof(Batch))
 
-const RtKernels rt_embree_kernels = {nearest_timed, occluded_timed, nearest_counted, occluded_counted,
-                                     sizeof(Batch)};
+const RtKernels *const rt_embree_kernels = &kernels;

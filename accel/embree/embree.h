@@ -58,7 +58,7 @@ typedef enum RtEmbreeQueryKind {
 } RtEmbreeQueryKind;
 
 struct RtEmbree {
-    RtIsaAccel isa; /* its kernels are the same for all */
+    RtAccel base;
     RtEmbreeDevice device;
     RTCScene scene;
     bool user; /* else native */
@@ -81,7 +81,7 @@ static inline float rt_embree_limit(float t, double shrink) {
 
 /* ---- embree.c ---- */
 
-extern const RtKernels rt_embree_kernels;
+extern const RtKernels *const rt_embree_kernels; /* the same for all instruction sets */
 
 /* Callbacks of user geometry, which get a primitive and a packet of rays. */
 void rt_embree_intersect(const struct RTCIntersectFunctionNArguments *arguments);

@@ -123,7 +123,7 @@ static RtStatus check(const RtAccel *accel, RtError *error) {
 /* Embree asks for the box of each primitive: enlarged. */
 static void bounds_of(const struct RTCBoundsFunctionArguments *arguments) {
     const RtEmbreeSlot *slot = arguments->geometryUserPtr;
-    const RtBox *box = &slot->self->isa.base.scene->geometry.boxes[slot->ids[arguments->primID]];
+    const RtBox *box = &slot->self->base.scene->geometry.boxes[slot->ids[arguments->primID]];
     double growth = (double)slot->self->growth;
     *arguments->bounds_o = (struct RTCBounds){
         .lower_x = rt_float_below((double)box->lo.x - growth),
@@ -138,7 +138,7 @@ static void bounds_of(const struct RTCBoundsFunctionArguments *arguments) {
 /* Sets what follows from the reach: at least four times the size of the scene, and twice the distance of the
  * camera. */
 static void set_reach(RtEmbree *self) {
-    const RtScene *scene = self->isa.base.scene;
+    const RtScene *scene = self->base.scene;
     const RtBox *box = &scene->geometry.box;
     double size = fmax(rt_box_longest_side(*box), 0), magnitude = rt_box_largest_coordinate(*box);
     double camera = (double)rt_thickness(scene->camera.from, box) * 0x1p20;
@@ -169,9 +169,9 @@ static void attach_user(RtEmbree *self, RtShape shape, const uint32_t *ids, uint
 /* Embree uses the scene's vertices. It reads 16 bytes of each, 4 beyond the end of the last one; a block of
  * rt_alloc is padded enough. */
 static void attach_triangles(RtEmbree *self, enum RTCBuildQuality quality) {
-    const RtGeometry *g = &self->isa.base.scene->geometry;
+    const RtGeometry *g = &self->base.scene->geometry;
     size_t count = (size_t)g->triangle_count * 3;
-    self->indices = rt_arena_alloc(&self->isa.base.memory, count, sizeof(uint32_t));
+    self->indices = rt_arena_alloc(&self->base.memory, count, sizeof(uint32_t));
     if (!self->indices) return;
     for (size_t i = 0; i < count; i++) self->indices[i] = (uint32_t)i;
     RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -186,7 +186,7 @@ static void attach_triangles(RtEmbree *self, enum RTCBuildQuality quality) {
 _Static_assert(sizeof(RtSphere) == 4 * sizeof(float), "centre and radius, as Embree wants them");
 
 static void attach_spheres(RtEmbree *self, enum RTCBuildQuality quality) {
-    const RtGeometry *g = &self->isa.base.scene->geometry;
+    const RtGeometry *g = &self->base.scene->geometry;
     RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     rtcSetGeometryBuildQuality(geometry, quality);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, g->spheres, 0,
@@ -195,7 +195,7 @@ static void attach_spheres(RtEmbree *self, enum RTCBuildQuality quality) {
 }
 
 static void attach_all(RtEmbree *self, enum RTCBuildQuality quality) {
-    const RtGeometry *g = &self->isa.base.scene->geometry;
+    const RtGeometry *g = &self->base.scene->geometry;
     bool own[RT_SHAPE_COUNT] = {false}; /* as Embree's own geometry */
     if (!self->user) {
         own[RT_SHAPE_TRIANGLE] = own[RT_SHAPE_SPHERE] = true;
@@ -235,8 +235,8 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     /* Without the flag its box test is one fused multiply-add of plane, 1 / dir and org / dir. */
     accel->absolute = !self->user && !values[PARAM_ROBUST].flag;
     accel->counts = false;
-    rt_isa_use(accel, &rt_embree_kernels);
-    if (!self->user) RT_TRY(check_width(&self->isa.base.scene->geometry.box, error));
+    rt_isa_use(accel, rt_embree_kernels);
+    if (!self->user) RT_TRY(check_width(&self->base.scene->geometry.box, error));
     RT_TRY(open_device(&self->device, values[PARAM_ISA].choice, what->threads, error));
     set_reach(self);
     self->scene = rtcNewScene(self->device.device);
@@ -299,7 +299,6 @@ const RtAccelOps rt_embree_ops = {
     .bytes = sizeof(RtEmbree),
     .build = build,
     .destroy = destroy,
-    RT_ISA_OPS,
     .describe = describe,
     .validate = validate,
     .library = library,

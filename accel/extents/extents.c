@@ -12,7 +12,7 @@
 
 RT_KERNEL void scan(RtExtentKind kind, const RtExtents *self, const RtPreparedRay *ray, bool any, RtHit *best,
                     RtTally *tally) {
-    const RtGeometry *geometry = &self->isa.base.scene->geometry;
+    const RtGeometry *geometry = &self->base.scene->geometry;
     const RtExtentSet *set = &self->set;
     RtLine line = rt_line(set, kind, &geometry->box, ray);
     float enter;
@@ -37,8 +37,6 @@ RT_KERNEL void search(const RtExtents *self, void *scratch, const RtPreparedRay 
 
 RT_DEFINE_KERNELS(RtExtents, search)
 
-static const RtKernels one_lane = {RT_KERNEL_OPS};
-
 /* ---- building ---- */
 
 #define PARAMS(X)                                                                                            \
@@ -62,8 +60,8 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtValue *values = what->values;
     RtExtents *self = (RtExtents *)accel;
     RtExtentKind kind = (RtExtentKind)values[PARAM_KIND].choice;
-    bool in_lanes = kind == RT_EXTENT_BOX && rt_has_lanes(values[PARAM_LANES]);
-    rt_isa_use(accel, in_lanes ? RT_KERNELS_FOR(extents, rt_isa_best()) : &one_lane);
+    if (kind == RT_EXTENT_BOX && rt_has_lanes(values[PARAM_LANES]))
+        rt_isa_use(accel, RT_KERNELS_FOR(extents, rt_isa_best()));
     RT_TRY(
         rt_extent_set_init(&self->set, &accel->memory, kind, (uint32_t)values[PARAM_SLABS].i, count, error));
     for (uint32_t id = 0; id < count; id++) {
@@ -115,7 +113,7 @@ const RtAccelOps rt_extents_ops = {
     RT_PARAMS_OF(params),
     .bytes = sizeof(RtExtents),
     .build = build,
-    RT_ISA_OPS,
+    .kernels = &kernels,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

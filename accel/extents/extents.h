@@ -8,7 +8,7 @@
 
 /* One extent per object, by id; boxes are the scene's own. */
 typedef struct RtExtents {
-    RtIsaAccel isa;
+    RtAccel base;
     RtExtentSet set;
 } RtExtents;
 

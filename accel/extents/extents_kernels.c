@@ -9,7 +9,7 @@
  *
  * The same counts: every box up to where a ray stops is a step and an extent test. */
 #include "accel/batch.h"
-#include "accel/extents/extents.h"
+#include "accel/isa.h"
 
 enum { BOX = sizeof(RtBox) / sizeof(float) };
 

@@ -33,7 +33,7 @@
  * Counting: an extent test for the box of the grid; a step per voxel visited. With nested grids also a step
  * per grid walked through, including the outermost. */
 #include "accel/grid/grid.h"
-#include "accel/mailbox.h"
+#include "accel/kernel.h"
 
 /* One axis of a walk. Intervals are numbered along the ray: 0 is the first it can meet, and lies between
  * planes 0 and 1. Steps and strides are negative (modulo 2^32) if the ray runs against the axis. */
@@ -303,7 +303,7 @@ RT_KERNEL void search(const RtGrid *self, void *scratch, const RtPreparedRay *ra
         rt_test_all(&self->base.scene->geometry, ray, any, best, tally);
         return;
     }
-    RtMailbox *mailbox = self->mailbox ? scratch : NULL;
+    RtMailbox *mailbox = self->base.scratch_bytes > 0 ? scratch : NULL;
     rt_mailbox_next_ray(mailbox, &self->base.scene->geometry);
     if (self->depth == 1)
         walk_flat(self, mailbox, t, ray, any, best, tally);
@@ -519,7 +519,7 @@ const RtAccelOps rt_grid_ops = {
     RT_PARAMS_OF(rt_grid_params),
     .bytes = sizeof(RtGrid),
     .build = rt_grid_build,
-    RT_KERNEL_OPS,
+    .kernels = &kernels,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

@@ -79,8 +79,7 @@ typedef struct RtGrid {
     RtAccel base;
     RtBox box;
     RtGridLevel levels[RT_GRID_MAX_LEVELS];
-    uint32_t depth; /* used levels; 0 for an empty scene */
-    bool mailbox;
+    uint32_t depth;       /* used levels; 0 for an empty scene */
     bool surfaces;        /* overlap=exact */
     double slack;         /* objects' boxes are grown by this */
     RtClippedRays served; /* rays that lists of surfaces serve */

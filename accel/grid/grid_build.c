@@ -11,7 +11,7 @@
  * only lengthens lists. */
 #include "accel/grid/grid.h"
 
-#include "accel/mailbox.h"
+#include "accel/kernel.h"
 #include "core/base/elementary.h"
 
 #include <assert.h>
@@ -436,8 +436,7 @@ RtStatus rt_grid_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtValue *values = what->values;
     RtGrid *grid = (RtGrid *)accel;
     grid->box = g->box;
-    grid->mailbox = values[RT_GRID_MAILBOX].flag;
-    if (grid->mailbox) accel->scratch_bytes = rt_mailbox_bytes(g);
+    if (values[RT_GRID_MAILBOX].flag) accel->scratch_bytes = rt_mailbox_bytes(g);
     grid->surfaces = values[RT_GRID_OVERLAP].choice == RT_GRID_EXACT;
     grid->slack = values[RT_GRID_SLACK].f;
     if (g->object_count == 0) return RT_OK;

@@ -10,7 +10,7 @@
  *
  * A z-buffer that interpolated depths would round otherwise than a ray tracer. This one has no arithmetic of
  * its own: at each sample that an object may be seen at, the object's hit function tells coverage and depth,
- * for the very ray that will be traced. Only where an object cannot be seen (item_draw.c,
+ * for the very ray that will be traced. Only where an object cannot be seen (item.c,
  * item_kernels.c), or is behind all that is drawn already, is it not asked. */
 #ifndef RT_ACCEL_ITEM_ITEM_H
 #define RT_ACCEL_ITEM_ITEM_H
@@ -47,7 +47,7 @@ typedef struct RtItemProjection {
 } RtItemProjection;
 
 typedef struct RtItemBuffer {
-    RtIsaAccel isa;
+    RtAccel base;
     const RtItemRaster *raster;
     RtView view;
     uint32_t *samples; /* [rows * columns]: object ids */
@@ -67,16 +67,13 @@ static inline size_t rt_item_sample_count(const RtItemBuffer *buffer) {
 }
 
 static inline const RtGeometry *rt_item_geometry(const RtItemBuffer *buffer) {
-    return &buffer->isa.base.scene->geometry;
+    return &buffer->base.scene->geometry;
 }
 
-/* ---- item_draw.c ---- */
+/* ---- item.c ---- */
 
 /* In views so wide that direction_error is larger everything is seen everywhere. */
 #define RT_ITEM_MAX_DIRECTION_ERROR 0x1p-10
-
-/* Needs the view. */
-RtItemProjection rt_item_projection(const RtView *view);
 
 /* Samples lo[0]..hi[0] of rows lo[1]..hi[1]; no ray hits the object at a t below `near`. */
 typedef struct RtItemFootprint {
@@ -116,9 +113,6 @@ void rt_item_draw_object(RtItemTile *tile, uint32_t id);
 /* To be called for a block whose samples have changed. */
 void rt_item_update_farthest(RtItemTile *tile, uint32_t block);
 
-/* Fills in the samples. */
-RtStatus rt_item_draw_all(RtItemBuffer *buffer, int threads, RtError *error);
-
 /* ---- item_kernels.c, for each instruction set ---- */
 
 struct RtItemRaster {
@@ -127,6 +121,7 @@ struct RtItemRaster {
     void (*draw)(RtItemTile *tile, const RtRef *objects, size_t count);
 };
 
-extern const RtItemRaster rt_item_raster_portable, rt_item_raster_avx2, rt_item_raster_avx512;
+extern const RtItemRaster *const rt_item_raster_portable, *const rt_item_raster_avx2,
+                                                              *const rt_item_raster_avx512;
 
 #endif

@@ -395,7 +395,7 @@ typedef struct RayRun {
 RT_KERNEL void pass_on(const RayRun *run, size_t i, RtTally *tallies) {
     if (tallies) tallies[RT_RAY_PRIMARY].passed_on++;
     RT_OBSERVE(tallies, .kind = RT_TRACED_PASSED_ON, .what = "item");
-    rt_hand_down_nearest(&run->buffer->isa.base, run->scratch, &run->rays[i], 1, &run->hits[i], tallies);
+    rt_hand_down(&run->buffer->base, run->scratch, &run->rays[i], 1, &run->hits[i], NULL, tallies);
 }
 
 RT_COLD static void observe_pending(const RtGeometry *g, const PendingTests *p, const float *t) {
@@ -481,10 +481,12 @@ RT_KERNEL void answer_run(const RtAccel *accel, const RtScratch *scratch, const 
     if (run.pending.count > 0) flush_pending(&run, tallies);
 }
 
-/* Primary rays of a stream; runs of others are handed down. */
-RT_KERNEL void answer_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                          RtHit *hits, RtTally *tallies) {
-    for (size_t i = 0, next; i < count; i = next) {
+/* Nearest hits of primary rays; runs of others, and queries for occluders, are handed down. */
+RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                     RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
+    (void)counted;
+    if (any) rt_hand_down(accel, scratch, rays, count, NULL, occluders, tallies);
+    for (size_t i = 0, next; !any && i < count; i = next) {
         bool own = rays[i].kind == RT_RAY_PRIMARY;
         for (next = i + 1; next < count && (!own || next - i < RUN); next++) {
             if ((rays[next].kind == RT_RAY_PRIMARY) != own) break;
@@ -492,11 +494,11 @@ RT_KERNEL void answer_all(const RtAccel *accel, const RtScratch *scratch, const 
         if (own)
             answer_run(accel, scratch, rays + i, next - i, hits + i, tallies);
         else
-            rt_hand_down_nearest(accel, scratch, rays + i, next - i, hits + i, tallies);
+            rt_hand_down(accel, scratch, rays + i, next - i, hits + i, NULL, tallies);
     }
 }
 
-RT_DEFINE_BOTH(nearest, RtHit, answer_all)
-RT_DEFINE_HANDED_DOWN(occluded, uint32_t)
-RT_DEFINE_KERNEL_TABLE(item, 0);
-const RtItemRaster RT_OF_ISA(item_raster) = {place, draw};
+RT_DEFINE_STREAM_KERNELS(trace, 0)
+RT_DEFINE_KERNEL_TABLE(item);
+static const RtItemRaster raster = {place, draw};
+const RtItemRaster *const RT_OF_ISA(item_raster) = &raster;

@@ -23,7 +23,7 @@
  *
  * Counting: an extent test for the cell of the root; a step per node visited. */
 #include "accel/kd/kd.h"
-#include "accel/mailbox.h"
+#include "accel/kernel.h"
 
 #include <stdlib.h>
 
@@ -102,7 +102,7 @@ RT_KERNEL void search(const RtKd *self, void *scratch, const RtPreparedRay *ray,
         rt_test_all(g, ray, any, best, tally);
         return;
     }
-    RtMailbox *mailbox = self->mailbox ? scratch : NULL;
+    RtMailbox *mailbox = self->base.scratch_bytes > 0 ? scratch : NULL;
     rt_mailbox_next_ray(mailbox, g);
     for (;;) {
         const RtKdNode *leaf = descend(self, ray, &span, stack, &stacked, tally);
@@ -254,6 +254,12 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
     return RT_OK;
 }
 
+static void destroy(RtAccel *accel) {
+    RtKd *kd = (RtKd *)accel;
+    rt_free(kd->nodes);
+    rt_free(kd->ids);
+}
+
 const RtAccelOps rt_kd_ops = {
     .name = "kd",
     .summary = "cells split at the plane of least expected cost, by the surface area heuristic",
@@ -263,8 +269,8 @@ const RtAccelOps rt_kd_ops = {
     RT_PARAMS_OF(rt_kd_params),
     .bytes = sizeof(RtKd),
     .build = rt_kd_build,
-    .destroy = rt_kd_destroy,
-    RT_KERNEL_OPS,
+    .destroy = destroy,
+    .kernels = &kernels,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

@@ -62,7 +62,6 @@ typedef struct RtKd {
     RtBox box; /* the cell of the root */
     double traversal_cost, empty_bonus;
     uint32_t max_leaf_size, max_depth, failures;
-    bool mailbox;
     bool surfaces; /* overlap=exact */
     RtClippedRays served;
 } RtKd;
@@ -104,7 +103,6 @@ static inline bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, Rt
 
 /* kd_build.c */
 RtStatus rt_kd_build(RtAccel *accel, const RtBuild *what, RtError *error);
-void rt_kd_destroy(RtAccel *accel);
 
 /* ---- while building ---- */
 

@@ -12,7 +12,7 @@
  * more than the tree; such a tree is built on one thread, which keeps few of them. */
 #include "accel/kd/kd.h"
 
-#include "accel/mailbox.h"
+#include "accel/kernel.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 
@@ -320,12 +320,6 @@ static RtStatus build_tree(RtKd *kd, uint32_t objects, uint64_t limit, int threa
     return status;
 }
 
-void rt_kd_destroy(RtAccel *accel) {
-    RtKd *kd = (RtKd *)accel;
-    rt_free(kd->nodes);
-    rt_free(kd->ids);
-}
-
 static uint32_t usual_depth(uint32_t objects) {
     uint32_t log = 0;
     while (UINT64_C(1) << log < objects) log++;
@@ -342,8 +336,7 @@ RtStatus rt_kd_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     kd->max_leaf_size = (uint32_t)values[RT_KD_MAX_LEAF_SIZE].i;
     kd->max_depth = depth < 0 ? usual_depth(g->object_count) : (uint32_t)depth;
     kd->failures = (uint32_t)values[RT_KD_FAILURES].i;
-    kd->mailbox = values[RT_KD_MAILBOX].flag;
-    if (kd->mailbox) accel->scratch_bytes = rt_mailbox_bytes(g);
+    if (values[RT_KD_MAILBOX].flag) accel->scratch_bytes = rt_mailbox_bytes(g);
     kd->surfaces = values[RT_KD_OVERLAP].choice == OVERLAP_EXACT;
     if (g->object_count == 0) return RT_OK;
     kd->box = rt_box_widened(g->box, values[RT_KD_MARGIN].f);

@@ -46,7 +46,7 @@ typedef struct RtLightCube {
 } RtLightCube;
 
 typedef struct RtLightBuffer {
-    RtIsaAccel isa;
+    RtAccel base;
     uint32_t cells; /* as asked for */
     uint32_t longest;
     bool full_occlusion;
@@ -85,7 +85,7 @@ typedef struct RtLightFace {
 } RtLightFace;
 
 static inline RtLightFace rt_light_face(const RtLightBuffer *buffer, uint32_t light, int face) {
-    const RtScene *scene = buffer->isa.base.scene;
+    const RtScene *scene = buffer->base.scene;
     const RtLightCube *cube = &buffer->cubes[light];
     return (RtLightFace){&scene->geometry, cube, &cube->grids[face], scene->lights[light].position, face};
 }
@@ -139,37 +139,8 @@ typedef struct RtLightDepths {
 } RtLightDepths;
 bool rt_light_see(const RtLightFootprint *footprint, uint32_t column, uint32_t row, RtLightDepths *depths);
 
-/* ---- light_lists.c ---- */
-
-/* Makes the lists of all lights. The buffer serves unless they, or the candidates of a face, would take
- * `limit` bytes or more. */
-RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint64_t limit, int threads, RtError *error);
-
-/* Frees them; the buffer no longer serves. */
-void rt_light_drop_lists(RtLightBuffer *buffer);
-
-/* ---- light_choice.c ---- */
-
-typedef struct RtLightProbes RtLightProbes;
-
-/* Shadow rays, and what they cost in the layer below. *out is to be freed with rt_free. */
-RtStatus rt_light_make_probes(RtLightBuffer *buffer, RtLightProbes **out, RtError *error);
-
-/* Before lists are made: may they pay? */
-bool rt_light_may_pay(const RtLightProbes *probes);
-
-/* After that: do they? */
-RtStatus rt_light_pays(RtLightBuffer *buffer, RtLightProbes *probes, bool *pays, RtError *error);
-
 /* ---- light_kernels.c, for each instruction set ---- */
 
 RT_DECLARE_KERNELS(light);
-
-/* ---- light_stats.c ---- */
-
-uint64_t rt_light_bytes(const RtLightBuffer *buffer);
-bool rt_light_find_cell(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
-void rt_light_describe(const RtAccel *accel, RtDescription *out);
-RtStatus rt_light_validate(const RtAccel *accel, RtError *error);
 
 #endif

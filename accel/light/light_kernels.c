@@ -57,7 +57,7 @@ typedef struct RayBatch {
 
 /* Whether the lists are made for the ray. */
 RT_KERNEL bool is_served(const RtLightBuffer *self, const RtRay *ray) {
-    const RtScene *scene = self->isa.base.scene;
+    const RtScene *scene = self->base.scene;
     if (ray->source >= scene->light_count) return false;
     const RtVec3 to_light = rt_sub(scene->lights[ray->source].position, ray->org);
     bool good = ray->tmax <= 1;
@@ -68,17 +68,13 @@ RT_KERNEL bool is_served(const RtLightBuffer *self, const RtRay *ray) {
     return good;
 }
 
-RT_KERNEL void pass(Stream *stream, uint32_t ray) {
-    stream->passed[stream->passed_count++] = ray;
-}
-
 RT_KERNEL void find_lists(const RayBatch *batch, uint32_t count) {
     Stream *stream = batch->stream;
     for (uint32_t i = 0; i < count; i++) {
         const RtRay *ray = &batch->rays[i];
         uint32_t cell;
         if (!is_served(batch->self, ray)) {
-            pass(stream, i);
+            stream->passed[stream->passed_count++] = i;
             continue;
         }
         const int face = rt_light_face_of(ray->dir);
@@ -104,17 +100,17 @@ RT_KERNEL void find_lists(const RayBatch *batch, uint32_t count) {
 RT_KERNEL RtRef next_object(const RayBatch *batch, Cursor *cursor) {
     if (cursor->next == cursor->end || cursor->next->depth > cursor->depth) return RT_NO_OBJECT;
     if (cursor->next->object == RT_LIGHT_BEYOND) {
-        pass(batch->stream, cursor->ray);
+        batch->stream->passed[batch->stream->passed_count++] = cursor->ray;
         return RT_NO_OBJECT;
     }
     RT_COUNT(batch->tally, steps, 1);
     RT_OBSERVE(batch->tally, .kind = RT_TRACED_STEP, .what = "entry of object",
-               .index = rt_raster_id(&batch->self->isa.base.scene->geometry, cursor->next->object));
+               .index = rt_raster_id(&batch->self->base.scene->geometry, cursor->next->object));
     return cursor->next++->object;
 }
 
 RT_KERNEL void test_one(const RayBatch *batch, uint32_t ray, uint32_t id) {
-    const RtGeometry *g = &batch->self->isa.base.scene->geometry;
+    const RtGeometry *g = &batch->self->base.scene->geometry;
     RtPreparedRay prepared;
     RtHit hit = RT_MISS;
     rt_hit_ray(&prepared, g, &batch->rays[ray], batch->scratch->crossings);
@@ -136,12 +132,12 @@ RT_KERNEL void load_pairs(const RayBatch *batch, uint32_t first, uint32_t count,
     rt_load_columns(dir, four);
     for (int a = 0; a < 3; a++) pairs->dir[a] = four[a];
     pairs->tmax = four[3];
-    rt_raster_gather(&batch->self->isa.base.scene->geometry, batch->stream->pair_triangle + first, count,
+    rt_raster_gather(&batch->self->base.scene->geometry, batch->stream->pair_triangle + first, count,
                      pairs->v);
 }
 
 RT_KERNEL void test_triangles(const RayBatch *batch) {
-    const RtGeometry *g = &batch->self->isa.base.scene->geometry;
+    const RtGeometry *g = &batch->self->base.scene->geometry;
     const Stream *stream = batch->stream;
     for (uint32_t first = 0; first < stream->pair_count; first += RT_LANES) {
         uint32_t count = stream->pair_count - first < RT_LANES ? stream->pair_count - first : RT_LANES;
@@ -162,7 +158,7 @@ RT_KERNEL void test_triangles(const RayBatch *batch) {
 }
 
 RT_KERNEL void test_spheres(const RayBatch *batch) {
-    const RtGeometry *g = &batch->self->isa.base.scene->geometry;
+    const RtGeometry *g = &batch->self->base.scene->geometry;
     Stream *stream = batch->stream;
     hit_sphere_pairs(g, stream->spheres, stream->sphere_count, stream->sphere_t);
     for (uint32_t i = 0; i < stream->sphere_count; i++) {
@@ -175,7 +171,7 @@ RT_KERNEL void test_spheres(const RayBatch *batch) {
 
 /* A round of all rays in lists. */
 RT_KERNEL void take_round(const RayBatch *batch) {
-    const RtGeometry *g = &batch->self->isa.base.scene->geometry;
+    const RtGeometry *g = &batch->self->base.scene->geometry;
     Stream *stream = batch->stream;
     uint32_t left = 0;
     stream->pair_count = stream->sphere_count = 0;
@@ -215,8 +211,8 @@ RT_KERNEL void pass_on(const RayBatch *batch, RtTally *tallies) {
     RT_COUNT(batch->tally, passed_on, count);
     RT_OBSERVE(batch->tally, .kind = RT_TRACED_PASSED_ON, .what = "light");
     for (uint32_t i = 0; i < count; i++) stream->passed_rays[i] = batch->rays[stream->passed[i]];
-    rt_hand_down_occluded(&batch->self->isa.base, batch->scratch, stream->passed_rays, count,
-                          stream->passed_occluders, tallies);
+    rt_hand_down(&batch->self->base, batch->scratch, stream->passed_rays, count, NULL,
+                 stream->passed_occluders, tallies);
     for (uint32_t i = 0; i < count; i++) batch->occluders[stream->passed[i]] = stream->passed_occluders[i];
 }
 
@@ -242,12 +238,17 @@ RT_KERNEL void pass_all(const RtAccel *accel, const RtScratch *scratch, const Rt
         RT_COUNT(&tallies[RT_RAY_SHADOW], passed_on, 1);
         RT_OBSERVE(&tallies[RT_RAY_SHADOW], .kind = RT_TRACED_PASSED_ON, .what = "light");
     }
-    rt_hand_down_occluded(accel, scratch, rays, count, occluders, tallies);
+    rt_hand_down(accel, scratch, rays, count, NULL, occluders, tallies);
 }
 
-RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            uint32_t *occluders, RtTally *tallies) {
+RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                     RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
     const RtLightBuffer *self = (const RtLightBuffer *)accel;
+    (void)counted;
+    if (!any) {
+        rt_hand_down(accel, scratch, rays, count, hits, NULL, tallies);
+        return;
+    }
     if (!self->serves) {
         pass_all(accel, scratch, rays, count, occluders, tallies);
         return;
@@ -255,7 +256,7 @@ RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, cons
     for (size_t i = 0, next; i < count; i = next) {
         for (next = i; next < count && rays[next].kind != RT_RAY_SHADOW; next++) {
         }
-        if (next > i) rt_hand_down_occluded(accel, scratch, rays + i, next - i, occluders + i, tallies);
+        if (next > i) rt_hand_down(accel, scratch, rays + i, next - i, NULL, occluders + i, tallies);
         i = next;
         while (next < count && next - i < BLOCK && rays[next].kind == RT_RAY_SHADOW) next++;
         if (next == i) continue;
@@ -265,7 +266,5 @@ RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, cons
     }
 }
 
-RT_DEFINE_HANDED_DOWN(nearest, RtHit)
-RT_DEFINE_BOTH(occluded, uint32_t, occluded_all)
-
-RT_DEFINE_KERNEL_TABLE(light, sizeof(Stream));
+RT_DEFINE_STREAM_KERNELS(trace, sizeof(Stream))
+RT_DEFINE_KERNEL_TABLE(light);

@@ -30,7 +30,7 @@
  * Counting: an extent test for the box of the root; a step per node visited, on the way down or up; an empty
  * step per empty leaf. */
 #include "accel/octree/octree.h"
-#include "accel/mailbox.h"
+#include "accel/kernel.h"
 
 /* A descent pushes at most 7 nodes per depth. */
 enum { MAX_STACK = 7 * RT_OCTREE_DEPTH_LIMIT + 8, MAX_CELLS = 64 };
@@ -356,7 +356,7 @@ RT_KERNEL void search(const RtOctree *self, void *scratch, const RtPreparedRay *
         rt_test_all(&self->base.scene->geometry, ray, any, best, tally);
         return;
     }
-    RtMailbox *mailbox = self->mailbox ? scratch : NULL;
+    RtMailbox *mailbox = self->base.scratch_bytes > 0 ? scratch : NULL;
     rt_mailbox_next_ray(mailbox, &self->base.scene->geometry);
     if (self->traversal != RT_OCTREE_PARAMETRIC && walk(self, mailbox, enter, ray, any, best, tally)) return;
     descend(self, mailbox, ray, any, best, tally);
@@ -544,7 +544,7 @@ const RtAccelOps rt_octree_ops = {
     .bytes = sizeof(RtOctree),
     .build = rt_octree_build,
     .destroy = rt_octree_destroy,
-    RT_KERNEL_OPS,
+    .kernels = &kernels,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

@@ -68,7 +68,7 @@ typedef struct RtOctree {
     uint32_t *ids;       /* [id_count] */
     uint32_t node_count, id_count;
     uint32_t max_leaf_size, max_depth, split, traversal;
-    bool mailbox, cut_filled;
+    bool cut_filled;
     double slack, flat; /* how objects' boxes are grown: rt_octree_grown */
 } RtOctree;
 

@@ -11,7 +11,7 @@
  * as many cells as there were to pick from. Its sums are unbiased; their variance is their precision. */
 #include "accel/octree/octree.h"
 
-#include "accel/mailbox.h"
+#include "accel/kernel.h"
 #include "core/base/memory.h"
 #include "core/base/random.h"
 
@@ -362,8 +362,7 @@ RtStatus rt_octree_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     tree->slack = values[RT_OCTREE_SLACK].f;
     tree->flat = values[RT_OCTREE_FLAT].f;
     tree->cut_filled = values[RT_OCTREE_CUT_FILLED].flag;
-    tree->mailbox = values[RT_OCTREE_MAILBOX].flag;
-    if (tree->mailbox) accel->scratch_bytes = rt_mailbox_bytes(g);
+    if (values[RT_OCTREE_MAILBOX].flag) accel->scratch_bytes = rt_mailbox_bytes(g);
     if (g->object_count == 0) return RT_OK;
     RtBox root = g->box;
     for (uint32_t i = 0; i < g->object_count; i++)

@@ -6,8 +6,6 @@
  * their pages. Every answer is checked before anything else reads it: the object exists, and t is on the ray.
  * Object tests are counted here, whatever the plugin does with its counters, unless it has hit functions of
  * its own. */
-#include "accel/plugin/host.h"
-
 #include "accel/kernel.h"
 #include "accel/plugin/channel.h"
 #include "core/base/parallel.h"
@@ -46,10 +44,6 @@ typedef struct Plugin {
     pthread_mutex_t lock;
     RtError error;
 } Plugin;
-
-static const Plugin *plugin_of(const RtAccel *accel) {
-    return (const Plugin *)accel;
-}
 
 typedef struct ShownEvents {
     const char *name;                  /* of the accelerator */
@@ -275,10 +269,6 @@ static size_t round_up(size_t bytes, size_t unit) {
     return (bytes + unit - 1) / unit * unit;
 }
 
-static void lay_canaries(char *from, const char *end) {
-    memset(from, CANARY, (size_t)(end - from));
-}
-
 /* All bytes are CANARY if the first is and each equals the one before. */
 static bool canaries_are_intact(const char *from, const char *end) {
     size_t bytes = (size_t)(end - from);
@@ -307,8 +297,8 @@ static RtStatus map_memory(PluginQuery *query, RtError *error) {
     }
     if (wanted == 0) return RT_OK;
     char *memory = query->memory = query->memory_end - round_up(wanted, RT_CACHE_LINE);
-    lay_canaries(mapping + GUARD, memory);
-    lay_canaries(memory + wanted, query->memory_end);
+    memset(mapping + GUARD, CANARY, (size_t)(memory - mapping) - GUARD);
+    memset(memory + wanted, CANARY, (size_t)(query->memory_end - memory) - wanted);
     return RT_OK;
 }
 
@@ -337,7 +327,7 @@ static void close_query(const RtAccel *accel, void *scratch) {
 }
 
 static void begin(const RtAccel *accel, void *scratch) {
-    const Plugin *self = plugin_of(accel);
+    const Plugin *self = (const Plugin *)accel;
     if (self->table->begin) self->table->begin(self->self, ((PluginQuery *)scratch)->memory);
 }
 
@@ -347,7 +337,7 @@ static void begin(const RtAccel *accel, void *scratch) {
 static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *rays, size_t count,
                    size_t size) {
     char *answers = query->answers_end - count * size;
-    lay_canaries(answers - CANARIES, answers);
+    memset(answers - CANARIES, CANARY, CANARIES);
     memset(answers, UNSET, count * size);
     query->now.face.host = query->counting && rt_trace_observer ? &observed_host : &host;
     query->now.face.crossings = scratch->crossings;
@@ -494,16 +484,14 @@ static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *r
         if (counted) report_counted(&query->events);
         if (counted) add_counters(query, counters, n, tallies);
     }
-    for (size_t i = 0; counted && i < count; i++) {
-        const uint32_t object = any ? occluders[i] : hits[i].object;
-        rt_count_answer(object != RT_NO_OBJECT, &tallies[rays[i].kind]);
-    }
+    for (size_t i = 0; counted && i < count; i++)
+        rt_count_answer((any ? occluders[i] : hits[i].object) != RT_NO_OBJECT, &tallies[rays[i].kind]);
 }
 
-RT_DEFINE_STREAM_KERNELS(trace)
+RT_DEFINE_STREAM_KERNELS(trace, sizeof(PluginQuery))
 
 static RtStatus check(const RtAccel *accel, RtError *error) {
-    const Plugin *self = plugin_of(accel);
+    const Plugin *self = (const Plugin *)accel;
     return self->broken ? rt_fail(error, RT_BROKEN, "%s", self->error.message) : RT_OK;
 }
 
@@ -584,7 +572,6 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     accel->exact &= !(table->flags & RAYTALLY_OWN_HITS);
     accel->absolute |= (table->flags & RAYTALLY_ABSOLUTE_HITS) != 0;
     accel->counts &= !(table->flags & RAYTALLY_NO_COUNTS);
-    accel->scratch_bytes = sizeof(PluginQuery);
     self->query_bytes = table->query_bytes ? table->query_bytes(self->self) : 0;
     pthread_mutex_init(&self->lock, NULL);
     return RT_OK;
@@ -602,7 +589,7 @@ uint64_t rt_description_impossible(const RtDescription *d) {
 }
 
 static void describe(const RtAccel *accel, RtDescription *out) {
-    const Plugin *self = plugin_of(accel);
+    const Plugin *self = (const Plugin *)accel;
     raytally_description d = {.predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN};
     if (self->table->describe) self->table->describe(self->self, &d);
     *out = (RtDescription){.interior = d.interior,
@@ -621,7 +608,7 @@ static void describe(const RtAccel *accel, RtDescription *out) {
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {
-    const Plugin *self = plugin_of(accel);
+    const Plugin *self = (const Plugin *)accel;
     char message[900] = "";
     if (!self->table->validate || self->table->validate(self->self, message, sizeof message - 1) == 0)
         return RT_OK;
@@ -682,7 +669,7 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                             .describe = describe,
                             .validate = validate,
                             .each_box = table->each_box ? each_box : NULL,
-                            RT_KERNEL_OPS,
+                            .kernels = &kernels,
                             .open = open_query,
                             .close = close_query,
                             .begin = begin,

@@ -5,8 +5,7 @@
  * rounding, signal handlers, a crash) stay in other processes. One process tries the library and copies its
  * tables, their numbers and texts, into shared memory; raytally trusts them as little as any other input.
  * Each process that builds an accelerator opens the library for itself. */
-#include "accel/plugin.h"
-#include "accel/plugin/host.h"
+#include "accel/plugin/channel.h"
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/process.h"

@@ -345,7 +345,10 @@ RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, 
     const uint64_t limit = rt_memory_current_limit();
     *out = NULL;
     if (!remote) return rt_fail_memory(error, "an accelerator", sizeof(Remote));
-    *remote = (Remote){.base = {.ops = &remote->ops, .scene = scene, .scratch_bytes = sizeof(uint32_t)},
+    *remote = (Remote){.base = {.ops = &remote->ops,
+                                .scene = scene,
+                                .kernels = remote_ops.kernels,
+                                .scratch_bytes = remote_ops.kernels->scratch_bytes},
                        .ops = remote_ops,
                        .spec = *spec,
                        .threads = threads,
@@ -369,6 +372,28 @@ RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, 
     }
     return status;
 }
+
+/* ---- a spec, in this process or in one of its own ---- */
+
+RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                        RtError *error) {
+    return rt_spec_is_remote(spec) ? rt_remote_build(spec, scene, threads, out, error)
+                                   : rt_accel_build_here(spec, scene, threads, out, error);
+}
+
+RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out,
+                          RtError *error) {
+    RtSpec parsed;
+    *out = NULL;
+    RT_TRY(rt_spec_parse(spec, &parsed, error));
+    return rt_accel_build(&parsed, scene, threads, out, error);
+}
+
+RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error) {
+    return rt_accel_open_on(spec, scene, 0, out, error);
+}
+
+/* ---- the end ---- */
 
 static _Thread_local char exit_message[sizeof(((RtError *)0)->message)];
 
@@ -532,7 +557,7 @@ static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *r
         observe(accel, scratch, &rays[i], any);
 }
 
-RT_DEFINE_STREAM_KERNELS(trace)
+RT_DEFINE_STREAM_KERNELS(trace, sizeof(uint32_t))
 
 /* ---- the structure ---- */
 
@@ -582,7 +607,7 @@ static const RtAccelOps remote_ops = {
     .summary = "represents an accelerator in another process",
     .paper = "",
     .destroy = destroy,
-    RT_KERNEL_OPS,
+    .kernels = &kernels,
     .open = open_query,
     .close = close_query,
     .begin = begin,

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The process of a remote accelerator: see channel.h. */
-#include "accel/plugin.h"
 #include "accel/plugin/channel.h"
-#include "accel/plugin/host.h"
 #include "core/base/memory.h"
 #include "core/base/observe.h"
 #include "core/base/process.h"

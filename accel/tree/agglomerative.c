@@ -16,7 +16,6 @@
  * clusters is at least as large as that of the query and these bounds, so the search skips nodes that cannot
  * be nearer. It climbs from the slot of the query to the root and searches the other side of each node on the
  * way, the nearer child first. */
-#include "accel/tree/topdown.h"
 #include "accel/tree/tree.h"
 #include "core/base/memory.h"
 
@@ -34,14 +33,10 @@ typedef struct Neighbours {
     uint32_t *slot_of;    /* [tree->capacity] by cluster */
 } Neighbours;
 
-#define EMPTY_BOUND                                                                                          \
-    ((Bound){                                                                                                \
-        {-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}, {INFINITY, INFINITY, INFINITY}})
-
 static void set_slot(Neighbours *self, uint32_t slot, uint32_t cluster) {
     Bound *bound = &self->bounds[self->capacity + slot];
     self->cluster_at[slot] = cluster;
-    *bound = EMPTY_BOUND;
+    *bound = (Bound){RT_EMPTY_BOX.hi, RT_EMPTY_BOX.lo, RT_EMPTY_BOX.lo};
     if (cluster == NO_CLUSTER) return;
     const RtBox *box = &self->tree->nodes[cluster].box;
     self->slot_of[cluster] = slot;
@@ -158,12 +153,12 @@ typedef struct Link {
 } Link;
 
 static uint32_t next_start(const Neighbours *neighbours, uint32_t *slot) {
-    for (;; *slot = *slot + 1 < neighbours->capacity ? *slot + 1 : 0) {
-        uint32_t cluster = neighbours->cluster_at[*slot];
-        if (cluster == NO_CLUSTER) continue;
+    uint32_t cluster;
+    do {
+        cluster = neighbours->cluster_at[*slot];
         *slot = *slot + 1 < neighbours->capacity ? *slot + 1 : 0;
-        return cluster;
-    }
+    } while (cluster == NO_CLUSTER);
+    return cluster;
 }
 
 static void unite_all(Neighbours *neighbours, Link *chain) {

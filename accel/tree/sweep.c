@@ -6,7 +6,6 @@
  *
  * There are three rows of the same references, each sorted along one axis. The references of a node are one
  * run, at the same position in all rows, so every pass reads memory sequentially. */
-#include "accel/tree/topdown.h"
 #include "accel/tree/tree.h"
 
 typedef struct Sweep {

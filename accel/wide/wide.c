@@ -92,7 +92,7 @@ static RtStatus fill(RtWide *self, int place, const RtBuild *what, RtTreeMethod 
     RtStatus status = RT_OK;
     if (geometry->object_count >= MANY_OBJECTS) status = rt_tree_drop_leaves(&tree, geometry->boxes, error);
     if (status == RT_OK)
-        status = rt_wide_lay_out(&self->trees[place], &tree, geometry, &how, &self->isa.base.memory, error);
+        status = rt_wide_lay_out(&self->trees[place], &tree, geometry, &how, &self->base.memory, error);
     rt_tree_clear(&tree);
     return status;
 }
@@ -160,10 +160,6 @@ static RtWideRef root_of(const RtWideTree *self) {
     return root->count == 1 ? root->child[0] : 0;
 }
 
-static RtBox root_box(const RtWideTree *self) {
-    return rt_wide_children_box(rt_wide_node(self, 0));
-}
-
 /* The same hierarchy in plain form, of blocks of `memory`. */
 static RtStatus flatten(const RtWideTree *self, RtArena *memory, RtHierarchy *to, RtError *error) {
     RtWideRef top = root_of(self);
@@ -177,7 +173,7 @@ static RtStatus flatten(const RtWideTree *self, RtArena *memory, RtHierarchy *to
                         .ids = rt_arena_alloc(memory, sizes.ids, sizeof(uint32_t)),
                         .node_count = 1};
     RT_TRY(rt_arena_check(memory, "a hierarchy in plain form", error));
-    to->nodes[0].box = root_box(self);
+    to->nodes[0].box = rt_wide_children_box(rt_wide_node(self, 0));
     copy(self, to, 0, top);
     return RT_OK;
 }
@@ -334,7 +330,6 @@ const RtAccelOps rt_wide_ops = {
     .trial = "wide:sharing=0", /* scattered rays make no packets where they need not */
     .bytes = sizeof(RtWide),
     .build = build,
-    RT_ISA_OPS,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

@@ -178,7 +178,7 @@ RtStatus rt_wide_validate(const RtWideTree *self, const RtGeometry *geometry, Rt
 RT_DECLARE_KERNELS(wide);
 
 typedef struct RtWide {
-    RtIsaAccel isa;
+    RtAccel base;
     RtWideTree trees[2];        /* the second is for any-hit rays, if they have their own */
     const RtWideTree *occluded; /* the one for any-hit rays */
     uint32_t in_flight;         /* rays traced at once; 1: one after the other */

@@ -377,5 +377,5 @@ RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay
         (counted ? stream_nearest_counted : stream_nearest_timed)(&q);
 }
 
-RT_DEFINE_STREAM_KERNELS(trace)
-RT_DEFINE_KERNEL_TABLE(wide, sizeof(Scratch));
+RT_DEFINE_STREAM_KERNELS(trace, sizeof(Scratch))
+RT_DEFINE_KERNEL_TABLE(wide);

@@ -139,10 +139,9 @@ RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *
         Recorder recorder = {path, RT_OK, error};
         rt_query_begin(&query);
         rt_trace_observer = &(RtTraceObserver){record, &recorder};
-        if (path->any) /* the kernels of the top layer are called directly, because they name the occluder */
-            accel->ops->occluded_counted(accel, query.scratch, &path->ray, 1, &path->hit.object, tallies);
-        else
-            accel->ops->nearest_counted(accel, query.scratch, &path->ray, 1, &path->hit, tallies);
+        /* Not rt_occluded, which does not name the occluder. */
+        rt_trace_stream(accel, query.scratch, &path->ray, 1, path->any ? NULL : &path->hit, &path->hit.object,
+                        tallies);
         rt_trace_observer = NULL;
         status = recorder.status;
     }

@@ -50,16 +50,11 @@ static inline void close_forged(RtAccel *accel) {
     forged = (struct Forged){0};
 }
 
-RtStatus __real_rt_process_fork(RtProcess *process, int keep, RtError *error);
-void __real_rt_process_signal(const RtProcess *process, int number);
-bool __real_rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end);
-void __real_rt_futex_wait(atomic_uint *word, unsigned value, int milliseconds);
-void __real_rt_futex_set(atomic_uint *word, unsigned value);
-RtStatus __wrap_rt_process_fork(RtProcess *process, int keep, RtError *error);
-void __wrap_rt_process_signal(const RtProcess *process, int number);
-bool __wrap_rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end);
-void __wrap_rt_futex_wait(atomic_uint *word, unsigned value, int milliseconds);
-void __wrap_rt_futex_set(atomic_uint *word, unsigned value);
+__typeof__(rt_process_fork) __real_rt_process_fork, __wrap_rt_process_fork;
+__typeof__(rt_process_signal) __real_rt_process_signal, __wrap_rt_process_signal;
+__typeof__(rt_process_wait) __real_rt_process_wait, __wrap_rt_process_wait;
+__typeof__(rt_futex_wait) __real_rt_futex_wait, __wrap_rt_futex_wait;
+__typeof__(rt_futex_set) __real_rt_futex_set, __wrap_rt_futex_set;
 
 /* This process stands for the other one, since its use of memory will be looked up. */
 RtStatus __wrap_rt_process_fork(RtProcess *process, int keep, RtError *error) {

@@ -7,10 +7,11 @@
 #include "random_testing.h"
 
 #include "accel/batch.h"
-#include "accel/brute/brute.h"
 #include "accel/extents/extents.h"
 #include "accel/kernel.h"
 #include "accel/watertight.h"
+
+RT_DECLARE_KERNELS(brute);
 
 /* What is asked, and what is answered, timed and counted. */
 typedef struct Asked {
@@ -47,10 +48,8 @@ static void by_definition(const RtGeometry *geometry, Asked *asked) {
         rt_test_all(geometry, &prepared, false, &asked->hits[i], &asked->nearest[ray->kind]);
         rt_test_all(geometry, &prepared, true, &first, &asked->occluded[ray->kind]);
         asked->occluders[i] = first.object;
-        asked->nearest[ray->kind].rays++;
-        asked->nearest[ray->kind].hits += asked->hits[i].object != RT_NO_OBJECT;
-        asked->occluded[ray->kind].rays++;
-        asked->occluded[ray->kind].hits += first.object != RT_NO_OBJECT;
+        rt_count_answer(asked->hits[i].object != RT_NO_OBJECT, &asked->nearest[ray->kind]);
+        rt_count_answer(first.object != RT_NO_OBJECT, &asked->occluded[ray->kind]);
     }
 }
 
@@ -74,15 +73,10 @@ static void by_kernels(const RtKernels *kernels, const RtQuery *query, Asked *as
     for (size_t first = 0; first < asked->count; first += stream) {
         size_t left = asked->count - first, n = left < stream ? left : stream;
         const RtRay *rays = asked->rays + first;
-        if (counted) {
-            kernels->nearest_counted(query->accel, query->scratch, rays, n, asked->hits + first,
-                                     asked->nearest);
-            kernels->occluded_counted(query->accel, query->scratch, rays, n, asked->occluders + first,
-                                      asked->occluded);
-        } else {
-            kernels->nearest(query->accel, query->scratch, rays, n, asked->hits + first);
-            kernels->occluded(query->accel, query->scratch, rays, n, asked->occluders + first);
-        }
+        (counted ? kernels->nearest_counted : kernels->nearest)(query->accel, query->scratch, rays, n,
+                                                                asked->hits + first, NULL, asked->nearest);
+        (counted ? kernels->occluded_counted : kernels->occluded)(query->accel, query->scratch, rays, n, NULL,
+                                                                  asked->occluders + first, asked->occluded);
     }
 }
 
@@ -104,10 +98,6 @@ static const RtKernels *extents_kernels(RtIsa isa) {
     return RT_KERNELS_FOR(extents, isa);
 }
 
-static const RtKernels *kernels_of(const RtQuery *query) {
-    return ((const RtIsaAccel *)query->accel)->kernels;
-}
-
 /* `spec`, which is in lanes, by the kernels of every instruction set. */
 static void assert_lanes_are_right(const char *spec, const RtKernels *(*kernels)(RtIsa), const RtScene *scene,
                                    const Asked *right) {
@@ -115,7 +105,7 @@ static void assert_lanes_are_right(const char *spec, const RtKernels *(*kernels)
     OWNED_ACCEL RtAccel *lanes = open_accel(scene, spec);
     OWNED_QUERY query = open_query(lanes);
     char who[RT_MAX_SPEC_CHARS];
-    assert_ptr_equal(kernels_of(&query), kernels(rt_isa_best()));
+    assert_ptr_equal(query.accel->kernels, kernels(rt_isa_best()));
     for (RtIsa isa = RT_ISA_PORTABLE; isa <= RT_ISA_AVX512; isa++) {
         if (!rt_isa_runs(isa)) continue;
         snprintf(who, sizeof who, "%s by instruction set %d", spec, isa);
@@ -124,26 +114,16 @@ static void assert_lanes_are_right(const char *spec, const RtKernels *(*kernels)
     }
 }
 
-static void assert_brute_is_the_definition(const RtScene *scene, const RtRay *rays, size_t count) {
-    OWNED(clear) Asked right = begin_asking(rays, count);
-    OWNED_ACCEL RtAccel *one = open_accel(scene, "brute:lanes=1");
-    OWNED_QUERY query = open_query(one);
-    by_definition(&scene->geometry, &right);
-    assert_kernels_are_right(kernels_of(&query), &query, &right, "brute:lanes=1", count);
-    assert_lanes_are_right("brute", brute_kernels, scene, &right);
-}
-
-static void assert_boxes_in_lanes_are_boxes(const RtScene *scene, const RtRay *rays, size_t count) {
-    OWNED(clear) Asked right = begin_asking(rays, count);
-    OWNED_ACCEL RtAccel *one = open_accel(scene, "extents:lanes=1");
-    OWNED_QUERY query = open_query(one);
-    by_kernels(kernels_of(&query), &query, &right, count, true);
-    assert_lanes_are_right("extents", extents_kernels, scene, &right);
-}
-
 static void assert_lanes_change_nothing(const RtScene *scene, const RtRay *rays, size_t count) {
-    assert_brute_is_the_definition(scene, rays, count);
-    assert_boxes_in_lanes_are_boxes(scene, rays, count);
+    OWNED(clear) Asked by_tests = begin_asking(rays, count), by_boxes = begin_asking(rays, count);
+    OWNED_ACCEL RtAccel *brute = open_accel(scene, "brute:lanes=1");
+    OWNED_ACCEL RtAccel *extents = open_accel(scene, "extents:lanes=1");
+    OWNED_QUERY of_brute = open_query(brute), of_extents = open_query(extents);
+    by_definition(&scene->geometry, &by_tests);
+    assert_kernels_are_right(brute->kernels, &of_brute, &by_tests, "brute:lanes=1", count);
+    assert_lanes_are_right("brute", brute_kernels, scene, &by_tests);
+    by_kernels(extents->kernels, &of_extents, &by_boxes, count, true);
+    assert_lanes_are_right("extents", extents_kernels, scene, &by_boxes);
 }
 
 /* By rays of every family. */

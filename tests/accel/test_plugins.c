@@ -171,16 +171,11 @@ static RtPath path_of(RtAccel *accel, const RtRay *ray) {
     RtPath path;
     RtTally counted[RT_RAY_KIND_COUNT] = {0};
     RtHit hit;
-    bool blocked;
-    RtQuery query;
+    uint32_t occluder;
     assert_ok(rt_path_trace(&path, accel, ray, error));
-    assert_ok(rt_query_init(&query, accel, error));
-    if (path.any)
-        rt_occluded(&query, ray, 1, &blocked, counted);
-    else
-        rt_nearest(&query, ray, 1, &hit, counted);
+    OWNED_QUERY query = open_query(accel);
+    rt_trace_stream(accel, query.scratch, ray, 1, path.any ? NULL : &hit, &occluder, counted);
     assert_memory_equal(&path.tally, &counted[ray->kind], sizeof path.tally);
-    rt_query_clear(&query);
     return path;
 }
 

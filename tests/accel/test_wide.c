@@ -39,7 +39,7 @@ RT_TEST(validate_names_what_is_wrong_with_a_node) {
     uint32_t lane;
     OWNED_SCENE scene = make_triangles(60, 3);
     OWNED_ACCEL RtWide *wide = make_wide(&scene, BEST_SET, "max_leaf_size=1");
-    const RtAccel *accel = &wide->isa.base;
+    const RtAccel *accel = &wide->base;
     RtWideTree *tree = &wide->trees[0];
     RtWideRef at = inner_child(wide, &lane),
               end = rt_wide_ref((uint32_t)(tree->bytes / RT_WIDE_UNIT), 0, false);
@@ -88,7 +88,7 @@ RT_TEST(validate_names_what_is_wrong_with_a_node) {
 RT_TEST(validate_names_what_is_wrong_with_a_leaf_of_triangles) {
     OWNED_SCENE scene = make_triangles(5, 0);
     OWNED_ACCEL RtWide *wide = make_wide(&scene, BEST_SET, "max_leaf_size=8,block_cost=0");
-    const RtAccel *accel = &wide->isa.base;
+    const RtAccel *accel = &wide->base;
     RtWideNode *root = node_at(wide, 0);
     RtWideRef *leaf = &root->child[0];
     assert_int_equal(root->count, 1);
@@ -120,7 +120,7 @@ RT_TEST(validate_names_what_is_wrong_with_a_leaf_of_triangles) {
 RT_TEST(validate_names_what_is_wrong_with_a_leaf_of_one_sphere) {
     OWNED_SCENE scene = make_row(3, 0);
     OWNED_ACCEL RtWide *wide = make_wide(&scene, BEST_SET, "max_leaf_size=1");
-    const RtAccel *accel = &wide->isa.base;
+    const RtAccel *accel = &wide->base;
     RtWideRef *leaf = &node_at(wide, 0)->child[0];
     assert_int_equal(rt_wide_kind(*leaf), RT_WIDE_SPHERES);
     assert_true(rt_wide_is_sphere(*leaf));
@@ -133,7 +133,7 @@ RT_TEST(validate_names_what_is_wrong_with_a_leaf_of_one_sphere) {
 RT_TEST(validate_names_what_is_wrong_with_a_list) {
     OWNED_SCENE scene = make_row(3, 0);
     OWNED_ACCEL RtWide *wide = make_wide(&scene, BEST_SET, "max_leaf_size=8,block_cost=0");
-    const RtAccel *accel = &wide->isa.base;
+    const RtAccel *accel = &wide->base;
     RtWideNode *root = node_at(wide, 0);
     RtWideRef *leaf = &root->child[0];
     assert_int_equal(rt_wide_kind(*leaf), RT_WIDE_SPHERES);
@@ -159,7 +159,7 @@ RT_TEST(validate_names_a_node_that_is_too_deep) {
     const uint32_t nodes = CHAIN * sizeof(RtWideNode);
     RtBox box = scene.geometry.box;
     tree->bytes = nodes + (CHAIN + 1) * sizeof(RtWideList);
-    tree->arena = rt_arena_alloc(&wide->isa.base.memory, tree->bytes, 1);
+    tree->arena = rt_arena_alloc(&wide->base.memory, tree->bytes, 1);
     tree->node_count = CHAIN;
     for (uint32_t i = 0; i < CHAIN; i++) {
         const uint32_t units = sizeof(RtWideNode) / RT_WIDE_UNIT;
@@ -179,7 +179,7 @@ RT_TEST(validate_names_a_node_that_is_too_deep) {
     char says[64];
     snprintf(says, sizeof says, "node %u is too deep",
              (RT_TREE_MAX_DEPTH + 1) * (uint32_t)sizeof(RtWideNode) / RT_WIDE_UNIT);
-    assert_broken(&wide->isa.base, says);
+    assert_broken(&wide->base, says);
 }
 
 /* By `whole`, any-hit rays have a tree of their own: it is looked at too. */
@@ -188,7 +188,7 @@ RT_TEST(validate_looks_at_both_trees) {
     OWNED_ACCEL RtWide *wide = make_wide(&scene, BEST_SET, "build=spatial,whole=on");
     assert_ptr_equal(wide->occluded, &wide->trees[1]);
     ((RtWideNode *)(void *)wide->trees[1].arena)->count = 0;
-    assert_broken(&wide->isa.base, "node 0 has 0 children");
+    assert_broken(&wide->base, "node 0 has 0 children");
 }
 
 /* ---- the layout ---- */
@@ -262,7 +262,7 @@ RT_TEST(a_leaf_at_the_end_of_the_largest_arena_is_hit) {
         tree->arena = large;
         node_at(wide, 0)->child[0] = rt_wide_ref(last, RT_WIDE_TRIANGLES, true);
         {
-            OWNED_QUERY query = open_query(&wide->isa.base);
+            OWNED_QUERY query = open_query(&wide->base);
             rt_nearest(&query, rays, RAYS, hits, NULL);
         }
         for (int i = 0; i < RAYS; i++) assert_true(hits[i].t == 1 && hits[i].object == 0);
@@ -288,14 +288,11 @@ static void make_counted_rays(RtRay *rays) {
 
 static void count_rays(const RtWide *wide, const RtRay *rays, size_t cut, bool any, RtTally *tallies) {
     RtHit hits[COUNTED];
-    bool blocked[COUNTED];
-    OWNED_QUERY query = open_query(&wide->isa.base);
+    uint32_t occluders[COUNTED];
+    OWNED_QUERY query = open_query(&wide->base);
     for (size_t i = 0, n; i < COUNTED; i += n) {
         n = COUNTED - i < cut ? COUNTED - i : cut;
-        if (any)
-            rt_occluded(&query, rays + i, n, blocked, tallies);
-        else
-            rt_nearest(&query, rays + i, n, hits, tallies);
+        rt_trace_stream(query.accel, query.scratch, rays + i, n, any ? NULL : hits, occluders, tallies);
     }
 }
 
@@ -370,7 +367,7 @@ RT_TEST(what_would_take_too_much_is_refused_and_what_just_fits_is_not) {
     RtSpec spec;
     RtAccel *accel;
     uint64_t bytes = wide->trees[0].bytes;
-    rt_accel_destroy(&wide->isa.base);
+    rt_accel_destroy(&wide->base);
     assert_ok(rt_spec_parse("wide", &spec, error));
     const RtValue *values = spec.layers[0].values;
     assert_ok(build_within("wide", bytes, &scene, values, &accel, error));

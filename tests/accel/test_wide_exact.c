@@ -265,8 +265,8 @@ static void note_box(void *context, const RtBoxView *view) {
 static Target aim_at(const RtScene *scene, uint64_t seed) {
     Target target = {.scene = scene, .random = rt_random(seed, 3), .size = 1};
     RtWide *wide = make_wide(scene, BEST_SET, "build=spatial,alpha=0,budget=4,max_leaf_size=1");
-    wide->isa.base.ops->each_box(&wide->isa.base, (RtBoxViewer){note_box, &target});
-    rt_accel_destroy(&wide->isa.base);
+    wide->base.ops->each_box(&wide->base, (RtBoxViewer){note_box, &target});
+    rt_accel_destroy(&wide->base);
     if (scene->geometry.object_count == 0) return target;
     target.middle = rt_box_center(scene->geometry.box);
     target.size = (float)rt_box_longest_side(scene->geometry.box);
@@ -322,7 +322,7 @@ static void compare(const Bench *bench, const char *what, int cut) {
 /* No allocation but that of the query: one that were made while tracing would fail. */
 static void assert_like_brute(Bench *bench, const RtWide *wide, const char *what) {
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
-    OWNED_QUERY query = open_query(&wide->isa.base);
+    OWNED_QUERY query = open_query(&wide->base);
     for (int cut = 0; cut < 4; cut++) {
         rt_alloc_fail_at(1);
         trace_all(&query, bench, cut, NULL);
@@ -483,7 +483,7 @@ RT_TEST(rays_that_graze_the_children_of_the_root_are_answered_as_by_brute_in_str
         for (int k = 0; k < 4 * INSTRUCTION_SETS; k++) {
             OWNED_ACCEL RtWide *wide = make_wide(&scene, k / 4, ways[k % 4]);
             if (!wide) continue;
-            OWNED_QUERY query = open_query(&wide->isa.base);
+            OWNED_QUERY query = open_query(&wide->base);
             for (size_t n = 1, first = 0; n <= LONGEST; n++, first = (first + n) % (COUNT - LONGEST)) {
                 rt_nearest(&query, rays + first, n, hits, NULL);
                 rt_occluded(&query, rays + first, n, blocked, NULL);

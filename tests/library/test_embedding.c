@@ -231,9 +231,8 @@ RT_TEST(what_was_taught_for_a_count_is_forgotten) {
 
 /* A counted kernel with wrong answers. */
 static void lie(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count, RtHit *hits,
-                RtTally *tallies) {
-    (void)accel;
-    (void)scratch;
+                uint32_t *occluders, RtTally *tallies) {
+    (void)accel, (void)scratch, (void)occluders;
     for (size_t i = 0; i < count; i++) hits[i] = RT_MISS;
     tallies[rays[0].kind].rays += count;
 }
@@ -241,13 +240,13 @@ static void lie(const RtAccel *accel, const RtScratch *scratch, const RtRay *ray
 RT_TEST(a_kernel_that_answers_otherwise_when_it_counts_is_a_mismatch) {
     raytally_counters counters;
     RtAccel *accel = balls.accels[0]->accel;
-    const RtAccelOps *honest = accel->ops;
-    RtAccelOps lying = *honest;
+    const RtKernels *honest = accel->kernels;
+    RtKernels lying = *honest;
     lying.nearest_counted = lie;
-    accel->ops = &lying;
+    accel->kernels = &lying;
     assert_fails(raytally_count(balls.accels[0], balls.rays, 1, &counters, error), RAYTALLY_MISMATCH,
                  "differ from the timed one");
-    accel->ops = honest;
+    accel->kernels = honest;
 }
 
 RT_TEST(times_are_positive_and_the_first_is_the_measure_of_all) {

@@ -3,6 +3,7 @@
  * It wraps brute. */
 #include "library_testing.h"
 
+#include "accel/kernel.h"
 #include "verify/verify.h"
 
 #include <langinfo.h>
@@ -13,6 +14,7 @@ static atomic_uint_fast64_t calls, rays_asked, rays_sum; /* the sum of the hashe
 static atomic_bool met_comma;
 static RtAccelOps witness;
 static const RtAccelOps *brute;
+static const RtKernels *brute_kernels;
 
 static void look(void) {
     calls++;
@@ -25,38 +27,28 @@ static void look_at(const RtRay *rays, size_t count) {
     for (size_t i = 0; i < count; i++) rays_sum += XXH3_64bits(&rays[i], sizeof rays[i]);
 }
 
+static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                  RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
+    RtAccel as_brute = *accel;
+    (void)any, (void)counted;
+    look_at(rays, count);
+    as_brute.kernels = brute_kernels;
+    rt_trace_stream(&as_brute, scratch, rays, count, hits, occluders, tallies);
+}
+
+RT_DEFINE_STREAM_KERNELS(trace, 0)
+
 static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     look();
-    return brute->build(accel, what, error);
+    RT_TRY(brute->build(accel, what, error));
+    brute_kernels = accel->kernels;
+    accel->kernels = &kernels;
+    return RT_OK;
 }
 
 static void destroy(RtAccel *accel) {
     (void)accel;
     look();
-}
-
-static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                    RtHit *hits) {
-    look_at(rays, count);
-    brute->nearest(accel, scratch, rays, count, hits);
-}
-
-static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                     uint32_t *occluders) {
-    look_at(rays, count);
-    brute->occluded(accel, scratch, rays, count, occluders);
-}
-
-static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            RtHit *hits, RtTally *tallies) {
-    look_at(rays, count);
-    brute->nearest_counted(accel, scratch, rays, count, hits, tallies);
-}
-
-static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             uint32_t *occluders, RtTally *tallies) {
-    look_at(rays, count);
-    brute->occluded_counted(accel, scratch, rays, count, occluders, tallies);
 }
 
 static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
@@ -93,10 +85,6 @@ static int call_witness(void **state) {
     witness.name = "witness";
     witness.build = build;
     witness.destroy = destroy;
-    witness.nearest = nearest;
-    witness.occluded = occluded;
-    witness.nearest_counted = nearest_counted;
-    witness.occluded_counted = occluded_counted;
     witness.open = open_query;
     witness.close = close_query;
     witness.begin = begin;

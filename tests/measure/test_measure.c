@@ -33,13 +33,12 @@ static void close_stage(Stage *stage) {
     rt_scene_clear(&stage->scene);
 }
 
-static RtAccelOps enormous;
-static RtNearestCounted *count_below;
+static RtKernel *count_below;
 static uint64_t enormous_steps;
 
 static void count_enormously(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             RtHit *hits, RtTally *tallies) {
-    count_below(accel, scratch, rays, count, hits, tallies);
+                             RtHit *hits, uint32_t *occluders, RtTally *tallies) {
+    count_below(accel, scratch, rays, count, hits, occluders, tallies);
     tallies[rays->kind].steps = enormous_steps;
 }
 
@@ -50,10 +49,10 @@ RT_TEST(counts_of_2_63_or_more_are_refused_and_never_wrap_around) {
     const RtRaySet *set = &stage.sets[RT_RAY_RANDOM];
     OWNED_MEMORY RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
     assert_ok(rt_measure_answers(stage.accels[0], set, 1, expected, error));
-    enormous = *stage.accels[0]->ops;
+    RtKernels enormous = *stage.accels[0]->kernels;
     count_below = enormous.nearest_counted;
     enormous.nearest_counted = count_enormously;
-    stage.accels[0]->ops = &enormous;
+    stage.accels[0]->kernels = &enormous;
     enormous_steps = INT64_MAX - 1;
     assert_ok(rt_measure_count(stage.accels[0], set, expected, 1, &count, error));
     assert_true(count.tally.steps == INT64_MAX - 1);

@@ -257,7 +257,7 @@ static const RtAccelOps mutant_ops = {
     .bytes = sizeof(Mutant),
     RT_PARAMS_OF(mutant_params),
     .build = build_mutant,
-    RT_KERNEL_OPS,
+    .kernels = &kernels,
 };
 
 #define UNPADDED "mutant:kind=unpadded-boxes"

@@ -26,13 +26,12 @@ RT_KERNEL void lie(const RtAccel *accel, const RtScratch *scratch, const RtRay *
     (void)tallies;
     const Liar *liar = (const Liar *)accel;
     const RtAccel *truth = liar->truth.accel;
+    rt_trace_stream(truth, scratch, asked, count, hits, occluders, NULL);
     if (any) {
-        truth->ops->occluded(truth, scratch, asked, count, occluders);
         if (liar->lie == BLOCKED_IN_STREAMS_OF_64 && !counted && count == 64)
             occluders[63] = occluders[63] == RT_NO_OBJECT ? 0 : RT_NO_OBJECT;
         return;
     }
-    truth->ops->nearest(truth, scratch, asked, count, hits);
     for (size_t i = 0; i < count; i++) {
         if (liar->lie == T_IN_TIMED && !counted && &asked[i] == &asked_rays[1234])
             hits[i].t = nextafterf(hits[i].t, 0);
@@ -41,9 +40,9 @@ RT_KERNEL void lie(const RtAccel *accel, const RtScratch *scratch, const RtRay *
     }
 }
 
-RT_DEFINE_STREAM_KERNELS(lie)
+RT_DEFINE_STREAM_KERNELS(lie, 0)
 
-static const RtAccelOps liar_ops = {.name = "liar", .bytes = sizeof(Liar), RT_KERNEL_OPS};
+static const RtAccelOps liar_ops = {.name = "liar", .bytes = sizeof(Liar), .kernels = &kernels};
 
 typedef struct Stage {
     RtScene scene;
@@ -70,6 +69,7 @@ static int set_up(void **state) {
     assert_ok(rt_reference_init(&stage.reference, stage.brute, asked_rays, RAYS, 0, error));
     stage.liar.base = *stage.brute;
     stage.liar.base.ops = &liar_ops;
+    stage.liar.base.kernels = &kernels;
     *state = &stage;
     return 0;
 }

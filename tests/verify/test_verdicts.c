@@ -369,13 +369,14 @@ static void search_known(const Ignorant *self, void *scratch, const RtPreparedRa
 
 RT_DEFINE_KERNELS(Ignorant, search_known)
 
-static const RtAccelOps ignorant_ops = {.name = "ignorant", .bytes = sizeof(Ignorant), RT_KERNEL_OPS};
+static const RtAccelOps ignorant_ops = {.name = "ignorant", .bytes = sizeof(Ignorant), .kernels = &kernels};
 
 static RtEquivalence check_ignorant(const FamilyBench *bench, uint32_t known, bool absolute,
                                     RtCertain *certain) {
     RtEquivalence result;
     Ignorant liar = {.base = *bench->brute, .known = known};
     liar.base.ops = &ignorant_ops;
+    liar.base.kernels = &kernels;
     liar.base.exact = false;
     liar.base.absolute = absolute;
     assert_ok(rt_equivalence_check(&bench->reference, &liar.base, 1, &result, error));

@@ -251,8 +251,8 @@ RT_TEST(an_accelerator_has_as_many_failures_shrunk_as_are_asked_for) {
 static size_t shortest_losing;
 
 static void lose_last(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                      RtHit *hits) {
-    nearest_timed(accel, scratch, rays, count, hits);
+                      RtHit *hits, uint32_t *occluders, RtTally *tallies) {
+    nearest_timed(accel, scratch, rays, count, hits, occluders, tallies);
     if (count >= shortest_losing) hits[count - 1] = RT_MISS;
 }
 
@@ -403,13 +403,16 @@ RT_TEST(rows_add_up_over_the_parameters_of_an_accelerator) {
 
 static int register_accelerators(void **state) {
     static RtAccelOps noting, losing;
+    static RtKernels losing_kernels;
     (void)state;
     noting = losing = mutant_ops;
     noting.name = "noting";
     noting.build = build_noting_threads;
     losing.name = "losing";
     losing.build = NULL; /* padded boxes */
-    losing.nearest = lose_last;
+    losing_kernels = kernels;
+    losing_kernels.nearest = lose_last;
+    losing.kernels = &losing_kernels;
     assert_ok(rt_accel_register(&mutant_ops, error));
     assert_ok(rt_accel_register(&noting, error));
     assert_ok(rt_accel_register(&losing, error));
