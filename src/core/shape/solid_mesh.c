@@ -328,6 +328,8 @@ RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_
     if (count < 4)
         return rt_fail(error, RT_BAD_INPUT, "a closed mesh needs at least 4 triangles, this one has %u",
                        count);
+    const RtTransform here = rt_transform_identity();
+    if (!to_world) to_world = &here;
     RT_TRY(rt_solid_check_transform(to_world, error));
     RT_TRY(rt_reserve(&set->triangles, &set->triangle_capacity, (uint64_t)set->triangle_count + count,
                       sizeof(RtTriangle), error));
@@ -341,10 +343,7 @@ RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_
         }
     }
     RT_TRY(check_and_order(own, count, error));
-    RtSolid solid = {.kind = RT_SOLID_MESH,
-                     .first = set->triangle_count,
-                     .count = count,
-                     .to_world = rt_transform_identity()};
+    RtSolid solid = {.kind = RT_SOLID_MESH, .first = set->triangle_count, .count = count, .to_world = here};
     RT_TRY(rt_solid_mesh_boxes(set, &solid, error));
     return rt_solid_finish(set, &solid, rt_solid_mesh_support, index, error);
 }
