@@ -6,7 +6,6 @@
  * matters a lot. Lengths are in metres. Block (i, j) depends only on random stream (i, j); towers are
  * likely, and tall, near the middle. Each part stands at the origin of b->transform, with its
  * front, if it has one, towards -y; quads are polygons. */
-#include "core/base/random.h"
 #include "scenes/builtin.h"
 
 #define PARAMS(X)                                                                                            \

@@ -4,7 +4,6 @@
  * Tree i depends only on random stream i. Its solids (spheres, boxes, cones, cylinders, tori, rotated at
  * random) lie in a ball and are joined as a balanced binary tree: unions near the root, so that no single
  * operation empties it, and any operation below. */
-#include "core/base/random.h"
 #include "scenes/builtin.h"
 
 #define PARAMS(X)                                                                                            \

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The families of scenes. One row per recipe: how many objects of which shapes, where, how large, and how
  * the whole is scaled and moved. */
-#include "core/base/random.h"
 #include "scenes/builtin.h"
-#include "scenes/random_tree.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "scenes/random_tree.h"
+#include "scenes/build.h"
 
 #include <assert.h>
 

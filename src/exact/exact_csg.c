@@ -8,10 +8,8 @@
  * opposite. The result contains all points within the distance of the solid, or none within it of the
  * outside: planes move, a distance in object space is at most the norm of the inverse transform times as
  * long, and of a mesh every place that rounding may take for its surface is added or removed. */
-#include "exact/exact_hit.h"
-
-#include "core/base/memory.h"
 #include "exact/margin.h"
+#include "exact/referee.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -27,8 +27,7 @@
 #include "core/base/ray.h"
 #include "core/base/status.h"
 #include "core/base/transform.h"
-#include "core/shape/sphere.h"
-#include "core/shape/triangle.h"
+#include "core/shape/shape.h"
 
 /* X(CONSTANT, name) */
 #define RT_SOLID_KINDS(X)                                                                                    \

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Solids by the parameters of scene files. */
 #include "core/base/memory.h"
-#include "core/shape/cone.h"
 #include "core/shape/solid_parts.h"
 
 /* ---- polyhedra ---- */

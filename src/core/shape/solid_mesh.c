@@ -4,7 +4,7 @@
  *
  * Whether a line crosses a triangle is decided by the winding number of the triangle's outline about the
  * line, seen along it: moved to the origin and sheared until the ray is the z axis, as in
- * core/shape/triangle.h. The number is counted on the half line y = 0, x > 0: an edge from below (y < 0) to
+ * raytally/hit.h. The number is counted on the half line y = 0, x > 0: an edge from below (y < 0) to
  * above that passes to the right of the origin counts 1, its reverse -1, any other 0. An edge's contribution
  * is computed from its lower end to its upper one, whatever its direction. So both triangles at an edge
  * compute the same bits with opposite signs, and the contributions of all triangles add up to 0 exactly,
