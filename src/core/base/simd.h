@@ -124,15 +124,21 @@ RT_DEFINE_VECTORS(8, 4)
 RT_DEFINE_VECTORS(16, 8)
 #endif
 
+/* A function of a; of a and b. */
+#define RT_DEFINE_OF_ONE(Result, name, Type, value)                                                          \
+    RT_INLINE Result name(Type a) {                                                                          \
+        return value;                                                                                        \
+    }
+#define RT_DEFINE_OF_TWO(Type, name, value)                                                                  \
+    RT_INLINE Type name(Type a, Type b) {                                                                    \
+        return value;                                                                                        \
+    }
+
 /* ---- halves ---- */
 
 #if defined(__AVX2__)
-RT_INLINE RtFloat4 rt_lower4(RtFloat8 a) {
-    return _mm256_castps256_ps128(a);
-}
-RT_INLINE RtFloat4 rt_upper4(RtFloat8 a) {
-    return _mm256_extractf128_ps(a, 1);
-}
+RT_DEFINE_OF_ONE(RtFloat4, rt_lower4, RtFloat8, _mm256_castps256_ps128(a))
+RT_DEFINE_OF_ONE(RtFloat4, rt_upper4, RtFloat8, _mm256_extractf128_ps(a, 1))
 #else
 /* Without registers of eight gcc would move and compare lane by lane what is not in a union. */
 typedef union RtHalves {
@@ -153,12 +159,6 @@ RT_INLINE RtFloat8 rt_join4(RtFloat4 lower, RtFloat4 upper) {
 /* ---- minimum, maximum, signs ----
  *
  * rt_bits(mask): bit i is the sign of lane i */
-
-/* A function of a and b. */
-#define RT_DEFINE_OF_TWO(Type, name, value)                                                                  \
-    RT_INLINE Type name(Type a, Type b) {                                                                    \
-        return value;                                                                                        \
-    }
 
 #define RT_DEFINE_BY_REGISTER(N, HALF, MM)                                                                   \
     RT_DEFINE_OF_TWO(RtFloat##N, rt_min_float##N, MM##_min_ps(a, b))                                         \
@@ -245,27 +245,17 @@ RT_INLINE uint32_t rt_bits_int16(RtInt16 mask) {
 /* ---- square roots of doubles ---- */
 
 #if defined(__SSE2__)
-RT_INLINE RtDouble2 rt_sqrt_double2(RtDouble2 a) {
-    return _mm_sqrt_pd(a);
-}
+RT_DEFINE_OF_ONE(RtDouble2, rt_sqrt_double2, RtDouble2, _mm_sqrt_pd(a))
 #elif RT_NEON
-RT_INLINE RtDouble2 rt_sqrt_double2(RtDouble2 a) {
-    return vsqrtq_f64(a);
-}
+RT_DEFINE_OF_ONE(RtDouble2, rt_sqrt_double2, RtDouble2, vsqrtq_f64(a))
 #else
-RT_INLINE RtDouble2 rt_sqrt_double2(RtDouble2 a) {
-    return (RtDouble2){sqrt(a[0]), sqrt(a[1])};
-}
+RT_DEFINE_OF_ONE(RtDouble2, rt_sqrt_double2, RtDouble2, (RtDouble2){sqrt(a[0]), sqrt(a[1])})
 #endif
 #if defined(__AVX2__)
-RT_INLINE RtDouble4 rt_sqrt_double4(RtDouble4 a) {
-    return _mm256_sqrt_pd(a);
-}
+RT_DEFINE_OF_ONE(RtDouble4, rt_sqrt_double4, RtDouble4, _mm256_sqrt_pd(a))
 #endif
 #if RT_AVX512
-RT_INLINE RtDouble8 rt_sqrt_double8(RtDouble8 a) {
-    return _mm512_sqrt_pd(a);
-}
+RT_DEFINE_OF_ONE(RtDouble8, rt_sqrt_double8, RtDouble8, _mm512_sqrt_pd(a))
 #endif
 
 /* ---- comparisons to bits ---- */
@@ -423,44 +413,25 @@ RT_INLINE RtInt8 rt_select_bits8(uint32_t bits, RtInt8 a, RtInt8 b) {
 /* ---- rounding, and doubles ---- */
 
 #if RT_LANES > 4
-RT_INLINE RtFloats rt_floor(RtFloats a) {
-    return RT_MM(floor_ps)(a);
-}
-RT_INLINE RtFloats rt_ceil(RtFloats a) {
-    return RT_MM(ceil_ps)(a);
-}
+RT_DEFINE_OF_ONE(RtFloats, rt_floor, RtFloats, RT_MM(floor_ps)(a))
+RT_DEFINE_OF_ONE(RtFloats, rt_ceil, RtFloats, RT_MM(ceil_ps)(a))
 #elif RT_NEON
-RT_INLINE RtFloats rt_floor(RtFloats a) {
-    return vrndmq_f32(a);
-}
-RT_INLINE RtFloats rt_ceil(RtFloats a) {
-    return vrndpq_f32(a);
-}
+RT_DEFINE_OF_ONE(RtFloats, rt_floor, RtFloats, vrndmq_f32(a))
+RT_DEFINE_OF_ONE(RtFloats, rt_ceil, RtFloats, vrndpq_f32(a))
 #else
-RT_INLINE RtFloats rt_floor(RtFloats a) {
-    return (RtFloats){floorf(a[0]), floorf(a[1]), floorf(a[2]), floorf(a[3])};
-}
-RT_INLINE RtFloats rt_ceil(RtFloats a) {
-    return (RtFloats){ceilf(a[0]), ceilf(a[1]), ceilf(a[2]), ceilf(a[3])};
-}
+RT_DEFINE_OF_ONE(RtFloats, rt_floor, RtFloats,
+                 (RtFloats){floorf(a[0]), floorf(a[1]), floorf(a[2]), floorf(a[3])})
+RT_DEFINE_OF_ONE(RtFloats, rt_ceil, RtFloats, (RtFloats){ceilf(a[0]), ceilf(a[1]), ceilf(a[2]), ceilf(a[3])})
 #endif
 
 /* Four floats as doubles, and four doubles rounded to floats. gcc 12 makes five instructions of a conversion
  * by __builtin_convertvector that changes the size of a vector. */
 #if defined(__AVX2__)
-RT_INLINE RtDouble4 rt_widen4(RtFloat4 a) {
-    return _mm256_cvtps_pd(a);
-}
-RT_INLINE RtFloat4 rt_round4(RtDouble4 a) {
-    return _mm256_cvtpd_ps(a);
-}
+RT_DEFINE_OF_ONE(RtDouble4, rt_widen4, RtFloat4, _mm256_cvtps_pd(a))
+RT_DEFINE_OF_ONE(RtFloat4, rt_round4, RtDouble4, _mm256_cvtpd_ps(a))
 #else
-RT_INLINE RtDouble4 rt_widen4(RtFloat4 a) {
-    return __builtin_convertvector(a, RtDouble4);
-}
-RT_INLINE RtFloat4 rt_round4(RtDouble4 a) {
-    return __builtin_convertvector(a, RtFloat4);
-}
+RT_DEFINE_OF_ONE(RtDouble4, rt_widen4, RtFloat4, __builtin_convertvector(a, RtDouble4))
+RT_DEFINE_OF_ONE(RtFloat4, rt_round4, RtDouble4, __builtin_convertvector(a, RtFloat4))
 #endif
 
 /* The lower two of four floats as doubles. */
