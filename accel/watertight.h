@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The watertight triangle test for many pairs of a ray and a triangle at once, by width: RT_LANES pairs, or
- * four. It repeats rt_triangle_hit (core/shape/triangle.h) operation by operation, to the same bits.
+ * four. It repeats rt_triangle_hit (core/shape/shape.h) operation by operation, to the same bits.
  *
  *     rt_shear        moves vertices to the ray's origin and shears them, until the ray is the z axis
  *     rt_edge_prefilter    the edge functions in float32: rejects nearly all pairs

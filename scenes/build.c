@@ -202,10 +202,6 @@ static void cell_corners(const RtGridMesh *grid, const Mesh *mesh, uint32_t colu
  * the last. */
 static const unsigned char halves[2][3] = {{0, 1, 2}, {2, 3, 0}};
 
-static void add_to(RtVec3 *sum, RtVec3 a) {
-    *sum = rt_add(*sum, a);
-}
-
 /* Adds the area-weighted normals of its triangles to each point; the points of a pole share one sum. */
 static void sum_normals(const RtGridMesh *grid, const Mesh *mesh) {
     for (uint32_t row = 0; row < grid->rows; row++) {
@@ -214,18 +210,18 @@ static void sum_normals(const RtGridMesh *grid, const Mesh *mesh) {
             cell_corners(grid, mesh, column, row, corners);
             for (int half = 0; half < 2; half++) {
                 const unsigned char *at = halves[half];
-                RtVec3d a = rt_widen(mesh->points[corners[at[0]]]);
-                RtVec3d ab = rt_subd(rt_widen(mesh->points[corners[at[1]]]), a);
-                RtVec3d ac = rt_subd(rt_widen(mesh->points[corners[at[2]]]), a);
-                RtVec3 normal = rt_narrow(rt_crossd(ab, ac));
-                for (int i = 0; i < 3; i++) add_to(&mesh->normals[corners[at[i]]], normal);
+                RtVec3d v[3];
+                for (int i = 0; i < 3; i++) v[i] = rt_widen(mesh->points[corners[at[i]]]);
+                RtVec3 normal = rt_narrow(rt_area_vector(v[0], v[1], v[2]));
+                for (int i = 0; i < 3; i++)
+                    mesh->normals[corners[at[i]]] = rt_add(mesh->normals[corners[at[i]]], normal);
             }
         }
     }
     for (int end = 0; end < 2; end++) {
         if (!(end ? grid->last_pole : grid->first_pole)) continue;
         RtVec3 *row = mesh->normals + (end ? grid->rows * mesh->width : 0), sum = {0, 0, 0};
-        for (uint32_t i = 0; i < mesh->width; i++) add_to(&sum, row[i]);
+        for (uint32_t i = 0; i < mesh->width; i++) sum = rt_add(sum, row[i]);
         for (uint32_t i = 0; i < mesh->width; i++) row[i] = sum;
     }
 }

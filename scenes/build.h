@@ -10,6 +10,7 @@
 #define RT_SCENES_BUILD_H
 
 #include "core/base/param.h"
+#include "core/base/random.h"
 #include "core/base/transform.h"
 #include "core/scene/nff.h"
 
@@ -139,5 +140,22 @@ void rt_build_torus(RtSceneBuilder *b, const RtTorus *torus);
  */
 #define RT_TEAPOT_MAX_SIZE 1000
 void rt_build_teapot(RtSceneBuilder *b, uint32_t n);
+
+/* ---- random CSG trees, for testing accelerators and the trees themselves: random_tree.c ---- */
+
+#define RT_MAX_RANDOM_TREE 64
+
+typedef struct RtTreeRecipe {
+    uint32_t solids; /* 1..RT_MAX_RANDOM_TREE; a half-space adds one more */
+    bool coarse;     /* coordinates are multiples of 1/2 and turns of 90 degrees: many faces coincide */
+} RtTreeRecipe;
+
+/* A term of random solids of every kind with random operations and moves, within about 4 of the origin
+ * along each axis; its inside may be empty. The solids get materials below `materials`. */
+RtStatus rt_random_tree(RtCsgBuilder *builder, RtRandom *random, const RtTreeRecipe *recipe,
+                        uint32_t materials, RtCsgTerm *root, RtError *error);
+
+/* An axis-aligned box, with exactly these planes. */
+RtStatus rt_add_box(RtCsgBuilder *builder, RtBox box, uint32_t material, RtCsgTerm *out, RtError *error);
 
 #endif

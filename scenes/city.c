@@ -6,7 +6,6 @@
  * matters a lot. Lengths are in metres. Block (i, j) depends only on random stream (i, j); towers are
  * likely, and tall, near the middle. Each part stands at the origin of b->transform, with its
  * front, if it has one, towards -y; quads are polygons. */
-#include "core/base/random.h"
 #include "scenes/builtin.h"
 
 #define PARAMS(X)                                                                                            \
@@ -69,14 +68,10 @@ static const RtMaterial materials[MATERIALS] = {
     [CARS + 3] = CAR_PAINT(0.9f, 0.7f, 0.1f),
 };
 
-static uint32_t choose(RtRandom *random, uint32_t count) {
-    return rt_random_below(random, count);
-}
-
 /* ---- in the street ---- */
 
 static void add_car(RtSceneBuilder *b, RtRandom *random) {
-    b->material = CARS + choose(random, CAR_COUNT);
+    b->material = CARS + rt_random_below(random, CAR_COUNT);
     rt_build_box(b, rt_vec3d(0, -0.9, 0.35), rt_vec3d(4.4, 0.9, 0.95), RT_SIDES_ALL);
     b->material = GLASS;
     rt_build_box(b, rt_vec3d(0.9, -0.8, 0.95), rt_vec3d(3.4, 0.8, 1.5), RT_SIDES_STANDING);
@@ -202,11 +197,11 @@ static void add_flat_roof(const Lot *lot, double height) {
     stand(lot, 0, 0, height, 0);
     for (int i = 0; i < 4; i++) rt_build_box(b, lo[i], hi[i], RT_SIDES_STANDING);
     b->material = METAL;
-    for (uint32_t i = choose(lot->random, 3); i > 0; i--) {
+    for (uint32_t i = rt_random_below(lot->random, 3); i > 0; i--) {
         double x = between(lot, 2, w - 5), y = between(lot, 2, d - 5);
         rt_build_box(b, rt_vec3d(x, y, 0), rt_vec3d(x + 2.5, y + 1.5, 1.4), RT_SIDES_STANDING);
     }
-    if (choose(lot->random, 3) != 0) return;
+    if (rt_random_below(lot->random, 3) != 0) return;
     double x = between(lot, 3, w - 3), y = between(lot, 3, d - 3);
     stand(lot, x, y, height, 0);
     add_tank(b);
@@ -235,8 +230,8 @@ static void add_gable(const Lot *lot, double height) {
 
 static void add_house(const Lot *lot) {
     RtSceneBuilder *b = lot->b;
-    uint32_t storeys = 3 + choose(lot->random, 4), bays = 4 + choose(lot->random, 3);
-    uint32_t wall = WALLS + choose(lot->random, WALL_COUNT);
+    uint32_t storeys = 3 + rt_random_below(lot->random, 4), bays = 4 + rt_random_below(lot->random, 3);
+    uint32_t wall = WALLS + rt_random_below(lot->random, WALL_COUNT);
     double height = storey * storeys + 0.6, w = lot->width, d = lot->depth;
     stand(lot, 0, 0, 0, 0);
     b->material = wall;
@@ -244,13 +239,13 @@ static void add_house(const Lot *lot) {
     /* A cornice, a shop with an awning, windows above. */
     rt_build_box(b, rt_vec3d(0, -0.4, height - 0.5), rt_vec3d(w, 0, height), RT_SIDES_ALL);
     const RtVec3d awning[4] = {{1, -1.6, 2.6}, {w - 1, -1.6, 2.6}, {w - 1, 0, 3.2}, {1, 0, 3.2}};
-    b->material = CARS + choose(lot->random, CAR_COUNT);
+    b->material = CARS + rt_random_below(lot->random, CAR_COUNT);
     rt_build_quad(b, awning);
     b->material = GLASS;
     rt_build_box(b, rt_vec3d(1, -0.05, 0.4), rt_vec3d(w - 1, 0, 2.6), RT_SIDE_FRONT);
     add_windows(b, 0.5, w - 0.5, storey, storeys - 1, bays);
     b->material = wall;
-    if (choose(lot->random, 2))
+    if (rt_random_below(lot->random, 2))
         add_flat_roof(lot, height);
     else
         add_gable(lot, height);
@@ -281,8 +276,8 @@ static void add_mast(RtSceneBuilder *b) {
 
 /* Shafts that step back over a base. */
 static void add_tower(const Lot *lot) {
-    uint32_t wall = WALLS + choose(lot->random, WALL_COUNT);
-    uint32_t shafts = 1 + choose(lot->random, 3);
+    uint32_t wall = WALLS + rt_random_below(lot->random, WALL_COUNT);
+    uint32_t shafts = 1 + rt_random_below(lot->random, 3);
     double half = 9.5, height = 0;
     for (uint32_t i = 0; i < shafts; i++) {
         uint32_t storeys = 4 + (uint32_t)(between(lot, 0.2, 1) * (4 + 16 * lot->downtown));
@@ -291,7 +286,7 @@ static void add_tower(const Lot *lot) {
         half *= 0.78;
     }
     stand(lot, lot->width / 2, lot->depth / 2, height, 0);
-    if (choose(lot->random, 2))
+    if (rt_random_below(lot->random, 2))
         add_mast(lot->b);
     else
         add_tank(lot->b);
@@ -304,7 +299,7 @@ static void add_round_tower(const Lot *lot) {
     uint32_t storeys = 5 + (uint32_t)(between(lot, 0.3, 1) * (6 + 20 * lot->downtown));
     RtVec3d foot = {0, 0, 0}, top = {0, 0, storey * storeys + 1};
     stand(lot, lot->width / 2, lot->depth / 2, 0, 0);
-    b->material = WALLS + choose(lot->random, WALL_COUNT);
+    b->material = WALLS + rt_random_below(lot->random, WALL_COUNT);
     rt_build_cone(b, foot, radius, top, radius);
     rt_build_disc(b, top, radius, 32);
     b->material = GLASS;

@@ -4,7 +4,6 @@
  * Tree i depends only on random stream i. Its solids (spheres, boxes, cones, cylinders, tori, rotated at
  * random) lie in a ball and are joined as a balanced binary tree: unions near the root, so that no single
  * operation empties it, and any operation below. */
-#include "core/base/random.h"
 #include "scenes/builtin.h"
 
 #define PARAMS(X)                                                                                            \
@@ -53,19 +52,17 @@ static RtStatus add_solid(Field *f, uint32_t *index) {
     RtVec3 base = rt_narrow(rt_add_scaledd(center, axis, -size));
     RtVec3 apex = rt_narrow(rt_add_scaledd(center, axis, size));
     RtSolidSet *set = &f->builder.set;
+    float radius = (float)size;
     switch (rt_random_below(&f->random, 5)) {
-    case 0: {
-        float radius = (float)size;
+    case 0:
         return rt_solid_add_ellipsoid(set, rt_narrow(center), rt_vec3(radius, radius, radius), index,
                                       f->error);
-    }
     case 1: return add_turned_box(f, center, size, index);
-    case 2: {
-        float radius = (float)(size * between(f, 0.3, 0.8));
+    case 2:
+        radius = (float)(size * between(f, 0.3, 0.8));
         return rt_solid_add_frustum(set, base, radius, apex, radius, index, f->error);
-    }
     case 3:
-        return rt_solid_add_frustum(set, base, (float)size, apex, (float)(size * between(f, 0, 0.9)), index,
+        return rt_solid_add_frustum(set, base, radius, apex, (float)(size * between(f, 0, 0.9)), index,
                                     f->error);
     default:
         return rt_solid_add_ring(set, rt_narrow(center), rt_narrow(axis), (float)(size * 0.8),

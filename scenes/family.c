@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The families of scenes. One row per recipe: how many objects of which shapes, where, how large, and how
  * the whole is scaled and moved. */
-#include "core/base/random.h"
 #include "scenes/builtin.h"
-#include "scenes/random_tree.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -119,14 +117,10 @@ typedef struct Family {
     RtRandom random;
 } Family;
 
-static void add_triangle_of(Family *f, const RtVec3d v[3]) {
-    rt_build_triangle(f->b, v[0], v[1], v[2]);
-}
-
 static void add_triangle(Family *f, Placement at) {
     RtVec3d v[3];
     for (int i = 0; i < 3; i++) v[i] = rt_add_scaledd(at.center, rt_random_in_cube(&f->random), at.size);
-    add_triangle_of(f, v);
+    rt_build_triangle(f->b, v[0], v[1], v[2]);
 }
 
 /* Slivers, needles and degenerate triangles, among ordinary ones. */
@@ -144,7 +138,7 @@ static void add_sliver(Family *f, Placement at, uint32_t i) {
     case 4: p[1] = p[2] = p[0]; break;
     default: break;
     }
-    add_triangle_of(f, p);
+    rt_build_triangle(f->b, p[0], p[1], p[2]);
 }
 
 /* Triangles around one edge, like the pages of a book, or around one vertex. */
@@ -249,8 +243,8 @@ static void add_mesh(Family *f, uint32_t n) {
                     double x = at[k][0], y = at[k][1], z = (double)n - x - y;
                     v[k] = rt_normalized(rt_vec3d(x * sign.x, y * sign.y, z * sign.z));
                 }
-                add_triangle_of(f, v);
-                if (i + j + 1 < n) add_triangle_of(f, v + 1);
+                rt_build_triangle(f->b, v[0], v[1], v[2]);
+                if (i + j + 1 < n) rt_build_triangle(f->b, v[1], v[2], v[3]);
             }
         }
     }

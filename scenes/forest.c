@@ -7,8 +7,6 @@
  * a conifer is a trunk with whorls of boughs, each with a few broad hanging triangles of needles. Tree i
  * depends only on random stream i. The ground is noise from lattices of random heights (Perlin 1985, in
  * its simplest form); lengths are in metres. */
-#include "core/base/random.h"
-#include "scenes/build.h"
 #include "scenes/builtin.h"
 
 #define PARAMS(X)                                                                                            \

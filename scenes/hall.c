@@ -42,9 +42,11 @@ static const double front_y = -1, back_y = 33, arch_z = 4.9, arch_radius = 1.55;
 
 #define COUNT_OF(array) (uint32_t)(sizeof(array) / sizeof(array)[0])
 
-static void add_lathe(RtSceneBuilder *b, const RtVec3d *profile, uint32_t count, uint32_t steps,
+static const RtVec3d origin = {0, 0, 0};
+
+static void add_lathe(RtSceneBuilder *b, RtVec3d at, const RtVec3d *profile, uint32_t count, uint32_t steps,
                       uint32_t sides) {
-    const RtLathe lathe = {.profile = profile, .count = count, .steps = steps, .sides = sides};
+    const RtLathe lathe = {at, profile, count, steps, sides};
     rt_build_lathe(b, &lathe);
 }
 
@@ -120,9 +122,9 @@ static void add_column(RtSceneBuilder *b, uint32_t size) {
                                    {0.36, 0, 4.4}, {0.42, 0, 4.58}, {0.56, 0, 4.7}};
 
     rt_build_box(b, rt_vec3d(-0.62, -0.62, 0), rt_vec3d(0.62, 0.62, 0.18), RT_SIDES_STANDING);
-    add_lathe(b, base, COUNT_OF(base), size + 4, 6 * size);
+    add_lathe(b, origin, base, COUNT_OF(base), size + 4, 6 * size);
     add_shaft(b, size);
-    add_lathe(b, bell, COUNT_OF(bell), size + 2, 6 * size);
+    add_lathe(b, origin, bell, COUNT_OF(bell), size + 2, 6 * size);
     add_leaves(b, size);
     rt_build_box(b, rt_vec3d(-0.6, -0.6, 4.7), rt_vec3d(0.6, 0.6, arch_z), RT_SIDES_ALL);
 }
@@ -150,14 +152,14 @@ static void add_vase(RtSceneBuilder *b, RtVec3d at, uint32_t i, uint32_t size) {
     at.z += 1;
     rt_build_origin(b, at, 0);
     b->material = glazes[i % VASES];
-    add_lathe(b, profiles[i % VASES], POINTS, 5 * size, 6 * size);
+    add_lathe(b, origin, profiles[i % VASES], POINTS, 5 * size, 6 * size);
 }
 
 /* A baluster, .8 high and .2 thick. */
 static void add_baluster(RtSceneBuilder *b, uint32_t size) {
     static const RtVec3d profile[] = {{0.09, 0, 0},   {0.09, 0, 0.06}, {0.04, 0, 0.1}, {0.1, 0, 0.28},
                                       {0.08, 0, 0.4}, {0.035, 0, 0.6}, {0.06, 0, 0.7}, {0.09, 0, 0.8}};
-    add_lathe(b, profile, COUNT_OF(profile), size + 2, size + 2);
+    add_lathe(b, origin, profile, COUNT_OF(profile), size + 2, size + 2);
 }
 
 /* ---- chandeliers ---- */
@@ -168,12 +170,7 @@ static void add_candle(RtSceneBuilder *b, RtVec3d at, uint32_t size) {
     static const RtVec3d profile[] = {{0, 0, -0.02},   {0.1, 0, 0.02},  {0.11, 0, 0.05}, {0.035, 0, 0.05},
                                       {0.03, 0, 0.1},  {0.03, 0, 0.28}, {0.01, 0, 0.29}, {0.018, 0, 0.32},
                                       {0.01, 0, 0.36}, {0, 0, 0.4}};
-    const RtLathe lathe = {.center = at,
-                           .profile = profile,
-                           .count = COUNT_OF(profile),
-                           .steps = 2 * (COUNT_OF(profile) - 1),
-                           .sides = size + 2};
-    rt_build_lathe(b, &lathe);
+    add_lathe(b, at, profile, COUNT_OF(profile), 2 * (COUNT_OF(profile) - 1), size + 2);
 }
 
 static void add_chain(RtSceneBuilder *b, uint32_t size) {
@@ -195,7 +192,7 @@ static void add_chandelier(RtSceneBuilder *b, uint32_t size) {
                                   {0.14, 0, 0.05}, {0.04, 0, 0.2},  {0.06, 0, 0.4},  {0, 0, 0.45}};
     const RtTorus ring = {.axis = 2, .radius = 1, .tube = 0.05, .around = 6 * size, .sides = size + 2};
     rt_build_torus(b, &ring);
-    add_lathe(b, hub, COUNT_OF(hub), 3 * size, 2 * size + 2);
+    add_lathe(b, origin, hub, COUNT_OF(hub), 3 * size, 2 * size + 2);
     for (uint32_t i = 0; i < SPOKES; i++) {
         RtVec3d out = rt_on_circle(i, SPOKES), high = {0, 0, 0.3};
         rt_build_prism(b, rt_scaled(out, 0.1), 0.025, out, 0.025, size);

@@ -6,7 +6,6 @@
  * (edge of the cube over the cube root of n), so the density of the scene is the same for any n. In
  * clusters, the distance from a centre along each axis is the sum of four uniform numbers: nearly a normal
  * distribution, without a logarithm. */
-#include "core/base/random.h"
 #include "core/base/elementary.h"
 #include "scenes/builtin.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "scenes/random_tree.h"
+#include "scenes/build.h"
 
 #include <assert.h>
 
@@ -26,10 +26,6 @@ static RtVec3 vector(Generator *m, float lo, float hi) {
     RtVec3 v;
     for (int a = 0; a < 3; a++) v.at[a] = number(m, lo, hi);
     return v;
-}
-
-static uint32_t material(Generator *m) {
-    return choose(m, m->materials);
 }
 
 /* A random scale between 1/2 and 2, uneven or not, rotation and position. */
@@ -59,7 +55,7 @@ static RtStatus add_box(Generator *m, RtCsgTerm *out) {
     RtBox box;
     box.lo = vector(m, -3, 2);
     box.hi = rt_add(box.lo, vector(m, 0.5f, 3));
-    return rt_add_box(m->builder, box, material(m), out, m->error);
+    return rt_add_box(m->builder, box, choose(m, m->materials), out, m->error);
 }
 
 /* A cube cut by random planes, or one half-space. */
@@ -107,7 +103,7 @@ static RtStatus add_solid(Generator *m, RtCsgTerm *out) {
     case 4: RT_TRY(add_mesh(m, &place, &solid)); break;
     default: return add_box(m, out);
     }
-    return rt_csg_solid(m->builder, solid, material(m), out, m->error);
+    return rt_csg_solid(m->builder, solid, choose(m, m->materials), out, m->error);
 }
 
 /* Occasionally moves a term. */
@@ -141,6 +137,6 @@ RtStatus rt_random_tree(RtCsgBuilder *builder, RtRandom *random, const RtTreeRec
     if (!m.endless) return RT_OK;
     RtCsgTerm around;
     RtBox box = {{-4, -4, -4}, {4, 4, 4}};
-    RT_TRY(rt_add_box(builder, box, material(&m), &around, error));
+    RT_TRY(rt_add_box(builder, box, choose(&m, materials), &around, error));
     return rt_csg_combine(builder, RT_CSG_INTERSECTION, *root, around, root, error);
 }

@@ -8,7 +8,7 @@
 
 #include "core/shape/geometry.h"
 #include "rays/rayset.h"
-#include "scenes/random_tree.h"
+#include "scenes/build.h"
 
 #define MAX_HITS 512
 

@@ -234,6 +234,11 @@ static inline void add_models(RtSolidSet *set, const RtTransform *place, Model m
     }
 }
 
+#define OWNED_MODELS(set, models, place)                                                                     \
+    OWNED_SOLIDS set = {0};                                                                                  \
+    Model models[MODELS];                                                                                    \
+    add_models(&(set), place, models)
+
 /* ---- lists against membership ---- */
 
 static inline const char *describe(const Model *model, const RtRay *ray) {

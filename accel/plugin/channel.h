@@ -17,7 +17,7 @@
 #define RT_ACCEL_PLUGIN_CHANNEL_H
 
 #include "accel/plugin.h"
-#include "core/shape/sphere.h"
+#include "core/shape/shape.h"
 
 #include <raytally/accel.h>
 #include <stdatomic.h>

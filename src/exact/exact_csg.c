@@ -8,10 +8,8 @@
  * opposite. The result contains all points within the distance of the solid, or none within it of the
  * outside: planes move, a distance in object space is at most the norm of the inverse transform times as
  * long, and of a mesh every place that rounding may take for its surface is added or removed. */
-#include "exact/exact_hit.h"
-
-#include "core/base/memory.h"
 #include "exact/margin.h"
+#include "exact/referee.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -52,15 +50,6 @@ static RtStatus extend(Machine *m, RtRoot root, RtError *error) {
     return RT_OK;
 }
 
-static bool joined(RtCsgOp op, bool left, bool right) {
-    switch (op) {
-    case RT_CSG_UNION: return left || right;
-    case RT_CSG_INTERSECTION: return left && right;
-    case RT_CSG_DIFFERENCE: return left && !right;
-    }
-    return false;
-}
-
 /* Replaces the two topmost lists by the result of `op`. */
 static RtStatus apply(Machine *m, RtCsgOp op, bool reversed, RtError *error) {
     List *low = &m->lists[m->depth - 2], *high = &m->lists[m->depth - 1];
@@ -69,13 +58,13 @@ static RtStatus apply(Machine *m, RtCsgOp op, bool reversed, RtError *error) {
     uint64_t size = (uint64_t)end + left->count + right->count;
     RT_TRY(rt_reserve(&m->roots, &m->capacity, size, sizeof(RtRoot), error));
     bool in_left = left->before, in_right = right->before;
-    bool before = joined(op, in_left, in_right), inside = before;
+    bool before = rt_csg_joined(op, in_left, in_right), inside = before;
     while (i < left->count || k < right->count) {
         const RtRoot *a = &m->roots[left->first + i], *b = &m->roots[right->first + k];
         int order = i == left->count ? 1 : k == right->count ? -1 : rt_root_compare(a, b);
         if (order <= 0) in_left = !in_left, i++;
         if (order >= 0) in_right = !in_right, k++;
-        if (joined(op, in_left, in_right) == inside) continue;
+        if (rt_csg_joined(op, in_left, in_right) == inside) continue;
         inside = !inside;
         m->roots[end + count++] = order <= 0 ? *a : *b;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "exact/exact_hit.h"
+#include "exact/referee.h"
 
 static RtExactVec vertex(RtVec3 v) {
     return rt_exact_vec(rt_widen(v));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/margin.h"
 
-#include "exact/exact_hit.h"
+#include "exact/referee.h"
 
 RtMarginRay rt_margin_ray(const RtGeometry *geometry, const RtRay *ray, bool absolute) {
     RtMarginRay m = {.wide = rt_wide_ray(ray)};

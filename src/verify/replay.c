@@ -4,7 +4,7 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/versions.h"
-#include "core/scene/yaml.h"
+#include "core/scene/load.h"
 #include "core/text/json.h"
 #include "scenes/builtin.h"
 #include "scenes/open.h"

@@ -19,14 +19,19 @@ typedef struct Decision {
 /* The least and the greatest move that border_distance tries, as powers of two. */
 enum { BORDER_NEAR = -6, BORDER_FAR = 20 };
 
-/* The unit for object `id`. */
-static inline double border_unit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line) {
+/* The distance of the line's origin from the farthest plane of the box. */
+static inline double farthest_plane(RtBox box, const RtWideRay *line) {
     double reach = 0;
     for (int a = 0; a < 3; a++) {
-        reach = fmax(reach, fabs((double)geometry->boxes[id].lo.at[a] - line->org.at[a]));
-        reach = fmax(reach, fabs((double)geometry->boxes[id].hi.at[a] - line->org.at[a]));
+        reach = fmax(reach, fabs((double)box.lo.at[a] - line->org.at[a]));
+        reach = fmax(reach, fabs((double)box.hi.at[a] - line->org.at[a]));
     }
-    return 0x1p-24 * reach;
+    return reach;
+}
+
+/* The unit for object `id`. */
+static inline double border_unit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line) {
+    return 0x1p-24 * farthest_plane(geometry->boxes[id], line);
 }
 
 static inline bool same_place(const RtGeometry *g, uint32_t id, const RtWideRay *line, float ours,
@@ -111,22 +116,14 @@ static inline double border_distance(const RtGeometry *geometry, uint32_t id, co
     RtWideRay line = rt_wide_ray(ray);
     uint32_t index = rt_ref_index(geometry->objects[id]);
     double unit = border_unit(geometry, id, &line);
-    switch (rt_ref_shape(geometry->objects[id])) {
-    case RT_SHAPE_TRIANGLE: {
-        const RtVec3 *v = geometry->triangles[index].v;
-        const RtVec3d normal = rt_area_vector(rt_widen(v[0]), rt_widen(v[1]), rt_widen(v[2]));
-        return fmin(distance_from_edges(&line, v, 3), distance_from_plane(&line, rt_widen(v[0]), normal)) /
-               unit;
-    }
-    case RT_SHAPE_POLYGON: {
-        const RtPolygon *polygon = &geometry->polygons[index];
-        const RtVec3 *v = geometry->polygon_vertices + polygon->first;
-        return fmin(distance_from_edges(&line, v, polygon->count),
-                    distance_from_plane(&line, rt_widen(v[0]), polygon->normal)) /
-               unit;
-    }
-    default: return least_move(geometry, id, line, unit, decision);
-    }
+    const RtShape shape = rt_ref_shape(geometry->objects[id]);
+    const bool triangle = shape == RT_SHAPE_TRIANGLE;
+    if (!triangle && shape != RT_SHAPE_POLYGON) return least_move(geometry, id, line, unit, decision);
+    const RtVec3 *v = triangle ? geometry->triangles[index].v : rt_polygon_vertices(geometry, index);
+    const RtVec3d normal = triangle ? rt_area_vector(rt_widen(v[0]), rt_widen(v[1]), rt_widen(v[2]))
+                                    : geometry->polygons[index].normal;
+    const double edge = distance_from_edges(&line, v, triangle ? 3 : geometry->polygons[index].count);
+    return fmin(edge, distance_from_plane(&line, rt_widen(v[0]), normal)) / unit;
 }
 
 /* t - exact t, an exact difference, and the same in ulps of the exact t in float32. RT_MISSED if object `id`

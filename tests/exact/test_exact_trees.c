@@ -161,9 +161,8 @@ static uint32_t put_box(RtVec3 lo, RtVec3 hi, bool turned, RtTriangle *out) {
 }
 
 static RtCsgTerm add_mesh(RtCsgBuilder *b, const RtTriangle *triangles, uint32_t count) {
-    RtTransform still = rt_transform_identity();
     uint32_t solid;
-    assert_ok(rt_solid_add_mesh(&b->set, triangles, count, &still, &solid, error));
+    assert_ok(rt_solid_add_mesh(&b->set, triangles, count, NULL, &solid, error));
     return term_of(b, solid);
 }
 
@@ -359,12 +358,7 @@ static bool is_of_trees(size_t family) {
 /* Whether dir is so long that t, wherever the ray is at the scene, lies below the least normal number of
  * float32: then it has few digits or none. */
 static bool has_few_digits(const RtGeometry *g, const RtWideRay *line) {
-    double far = 0;
-    for (int a = 0; a < 3; a++) {
-        far = fmax(far, fabs((double)g->box.lo.at[a] - line->org.at[a]));
-        far = fmax(far, fabs((double)g->box.hi.at[a] - line->org.at[a]));
-    }
-    return far < FLT_MIN * rt_lengthd(line->dir);
+    return farthest_plane(g->box, line) < FLT_MIN * rt_lengthd(line->dir);
 }
 
 /* Asks about the object that is exactly the nearest, and about all that our hit function finds. Where
@@ -407,10 +401,9 @@ RT_TEST(a_tree_is_undecided_where_memory_is_short_and_only_there) {
     RtGeometry g[2] = {{0}, {0}};
     OWNED_BUILDER b = {0};
     RtTriangle triangles[12];
-    RtTransform still = rt_transform_identity();
     uint32_t mesh;
     make_rings(&g[0], &b);
-    assert_ok(rt_solid_add_mesh(&b.set, triangles, cube_mesh(triangles), &still, &mesh, error));
+    assert_ok(rt_solid_add_mesh(&b.set, triangles, cube_mesh(triangles), NULL, &mesh, error));
     add_tree(&g[1], &b, term_of(&b, mesh));
     assert_ok(rt_geometry_finish(&g[1], error));
     RtRay ray = ray_along(rt_vec3(0, 0, 0.5f), rt_vec3(1, 0, 0));

@@ -91,7 +91,6 @@ typedef struct Parts {
 
 static void add_parts(RtGeometry *g, Subject subject, const Parts *p) {
     OWNED_BUILDER b = {0};
-    RtTransform still = rt_transform_identity();
     uint32_t solid;
     RtCsgTerm root;
     if (subject == MESH) {
@@ -102,7 +101,7 @@ static void add_parts(RtGeometry *g, Subject subject, const Parts *p) {
             RtVec3 second = p->tips[1][y], third = p->tips[2][z];
             triangles[i] = (RtTriangle){{p->tips[0][x], turned ? third : second, turned ? second : third}};
         }
-        assert_ok(rt_solid_add_mesh(&b.set, triangles, 8, &still, &solid, error));
+        assert_ok(rt_solid_add_mesh(&b.set, triangles, 8, NULL, &solid, error));
         root = term_of(&b, solid);
     } else if (subject == TORUS) {
         assert_ok(rt_solid_add_ring(&b.set, p->center, p->axis, p->size, p->thick, &solid, error));

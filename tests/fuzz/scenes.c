@@ -4,7 +4,6 @@
 
 #include "core/base/memory.h"
 #include "core/scene/load.h"
-#include "core/scene/yaml.h"
 #include "measure/measure.h"
 #include "verify/ray_families.h"
 #include "verify/replay.h"

@@ -26,27 +26,28 @@ static void print(const RtCsgBuilder *builder, RtCsgTerm term, char *out) {
     strcat(out, ")");
 }
 
-/* The solids a..z must stand in the set for their terms to be made. */
 static void fill(RtCsgBuilder *builder) {
     RtTransform here = rt_transform_identity();
     uint32_t index;
     for (int i = 0; i < 26; i++) assert_ok(rt_solid_add_sphere(&builder->set, &here, &index, error));
 }
 
+/* The solids a..z must stand in the set for their terms to be made. */
+#define OWNED_LETTERS(builder)                                                                               \
+    OWNED_BUILDER builder = {0};                                                                             \
+    RtCsgTerm term;                                                                                          \
+    fill(&(builder))
+
 static void expect(const char *formula, const char *meaning) {
-    OWNED_BUILDER builder = {0};
-    RtCsgTerm term;
     char text[256] = "";
-    fill(&builder);
+    OWNED_LETTERS(builder);
     assert_ok(rt_formula_read(formula, &builder, look_up, &builder, &term, error));
     print(&builder, term, text);
     assert_string_equal(text, meaning);
 }
 
 static void expect_complaint(const char *formula, const char *complaint) {
-    OWNED_BUILDER builder = {0};
-    RtCsgTerm term;
-    fill(&builder);
+    OWNED_LETTERS(builder);
     assert_bad_input(rt_formula_read(formula, &builder, look_up, &builder, &term, error), complaint);
 }
 
@@ -83,14 +84,12 @@ RT_TEST(mistakes_are_placed_at_their_character) {
 
 RT_TEST(formulas_nest_as_deeply_as_memory_allows) {
     enum { DEPTH = 100000 };
-    OWNED_BUILDER builder = {0};
-    RtCsgTerm term;
+    OWNED_LETTERS(builder);
     char *formula = test_malloc(4 * DEPTH + 2);
     for (int i = 0; i < DEPTH; i++) memcpy(formula + 3 * i, "a-(", 3);
     formula[3 * DEPTH] = 'b';
     memset(formula + 3 * DEPTH + 1, ')', DEPTH);
     formula[4 * DEPTH + 1] = '\0';
-    fill(&builder);
     assert_ok(rt_formula_read(formula, &builder, look_up, &builder, &term, error));
     assert_int_equal(builder.nodes[term].size, DEPTH + 1);
     test_free(formula);

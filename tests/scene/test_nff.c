@@ -44,11 +44,8 @@ RT_TEST(every_statement_is_read) {
     assert_int_equal(scene.camera.width, 64);
     assert_int_equal(scene.camera.height, 48);
     assert_true(scene.background.z == 0.3f);
-}
-
-RT_TEST(a_light_without_colour_has_the_suggested_intensity) {
-    OWNED_SCENE scene = scene_of(FILE_NAME, everything);
     assert_int_equal(scene.light_count, 2);
+    /* The suggested intensity: the first light has no colour. */
     assert_true(scene.lights[0].intensity.x == (float)(sqrt(2.0) / 4));
     assert_true(scene.lights[1].intensity.x == 0.5f && scene.lights[1].intensity.z == 1);
 }

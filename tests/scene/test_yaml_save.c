@@ -2,17 +2,18 @@
 /* The YAML scene format: saving and loading restores every bit. */
 #include "yaml_testing.h"
 
-static void save_to(const RtScene *scene, const char *path) {
-    FILE *out = fopen(path, "wb");
-    assert_non_null(out);
-    assert_ok(rt_yaml_save(scene, out, error));
-    assert_int_equal(fclose(out), 0);
+#include "core/base/file.h"
+
+static RtScene saved_and_loaded(const RtScene *scene) {
+    static const char *const path = RT_TEST_FOLDER "/again.yaml";
+    RtScene again;
+    assert_ok(rt_scene_save(scene, path, true, error));
+    assert_ok(load(path, &again, error));
+    return again;
 }
 
 static void assert_survives(const RtScene *scene) {
-    OWNED_SCENE again;
-    save_to(scene, RT_TEST_FOLDER "/again.yaml");
-    assert_ok(load(RT_TEST_FOLDER "/again.yaml", &again, error));
+    OWNED_SCENE again = saved_and_loaded(scene);
     assert_true(rt_scene_fingerprint(&again) == rt_scene_fingerprint(scene));
 }
 
@@ -32,14 +33,13 @@ RT_TEST(a_scene_saved_and_loaded_keeps_every_bit) {
 }
 
 RT_TEST(a_saved_scene_names_its_format_first) {
-    char line[32];
     OWNED_SCENE scene = yaml_scene(everything);
-    save_to(&scene, RT_TEST_FOLDER "/named.yaml");
-    FILE *in = fopen(RT_TEST_FOLDER "/named.yaml", "r");
-    assert_non_null(in);
-    assert_non_null(fgets(line, sizeof line, in));
-    assert_int_equal(fclose(in), 0);
-    assert_string_equal(line, "format: 1\n");
+    RtMemoryFile file;
+    assert_ok(rt_memory_file_open(&file, error));
+    assert_ok(rt_yaml_save(&scene, file.file, error));
+    assert_ok(rt_memory_file_close(&file, "a scene", error));
+    assert_memory_equal(file.data, "format: 1\n", 10);
+    rt_free(file.data);
 }
 
 RT_TEST(solids_survive_saving) {
@@ -110,9 +110,7 @@ RT_TEST(names_of_any_printable_text_survive_saving) {
     static const char *const names[] = {"it's", "''", "a: b # c",    "- [x]", "\"",
                                         "\\n",  " ",  "gl\xc3\xa4s", "*a"};
     enum { COUNT = sizeof names / sizeof names[0] };
-    OWNED_SCENE scene = scene_of_names(names, COUNT), again;
-    save_to(&scene, RT_TEST_FOLDER "/again.yaml");
-    assert_ok(load(RT_TEST_FOLDER "/again.yaml", &again, error));
+    OWNED_SCENE scene = scene_of_names(names, COUNT), again = saved_and_loaded(&scene);
     for (uint32_t i = 0; i < COUNT; i++) assert_string_equal(again.materials[i].name, names[i]);
 }
 

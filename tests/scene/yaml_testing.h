@@ -6,7 +6,7 @@
 
 #include "scene_testing.h"
 
-#include "core/scene/yaml.h"
+#include "core/scene/load.h"
 #include "scenes/builtin.h"
 
 #include <sys/stat.h>

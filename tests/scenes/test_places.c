@@ -272,10 +272,8 @@ RT_TEST(points_on_the_circle_are_exact_where_they_can_be) {
 }
 
 RT_TEST(a_box_faces_outwards) {
-    OWNED_SCENE scene;
-    rt_scene_init(&scene);
+    OWNED_SCENE scene = begin_scene();
     RtSceneBuilder b = {.scene = &scene};
-    rt_build_material(&b, rt_default_material());
     for (int quarters = 0; quarters < 4; quarters++) {
         rt_build_origin(&b, rt_vec3d(10 * quarters, 0, 0), quarters);
         rt_build_box(&b, rt_vec3d(-1, -1, -1), rt_vec3d(1, 1, 1), RT_SIDES_ALL);
@@ -292,10 +290,8 @@ RT_TEST(a_box_faces_outwards) {
 
 RT_TEST(a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards) {
     static const RtVec3d profile[] = {{0, 0, 0}, {2, 0, 0.4}, {1, 0, 2}, {0, 0, 3}};
-    OWNED_SCENE scene;
-    rt_scene_init(&scene);
+    OWNED_SCENE scene = begin_scene();
     RtSceneBuilder b = {.scene = &scene};
-    rt_build_material(&b, rt_default_material());
     const RtLathe lathe = {.center = {5, 6, 7}, .profile = profile, .count = 4, .steps = 9, .sides = 7};
     rt_build_lathe(&b, &lathe);
     assert_int_equal(b.status, RT_OK);

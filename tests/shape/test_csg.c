@@ -35,19 +35,23 @@ RT_TEST(touching_boxes_are_joined_without_a_wall) {
     assert_hits(&forest, &rest, ray_along(rt_vec3(-1, 0.5f, 0.25f), along_x), 2, (float[]){1, 2});
 }
 
+/* Where the ray along x meets the tree, with the normals along x and the materials there. */
+static void assert_faces(const RtCsgForest *forest, const RtCsg *tree, RtRay ray, uint32_t count,
+                         const float *t, const double *normals, const uint32_t *materials) {
+    assert_hits(forest, tree, ray, count, t);
+    for (uint32_t i = 0; i < count; i++) {
+        RtCsgFacet facet = facet_at(forest, tree, &ray, t[i]);
+        assert_true(facet.normal.x == normals[i] && facet.normal.y == 0 && facet.normal.z == 0);
+        assert_int_equal(forest->set.solids[facet.solid].material, materials[i]);
+    }
+}
+
 RT_TEST(the_wall_of_a_drilled_hole_looks_into_the_hole) {
     OWNED_TREES(b, forest);
     RtCsgTerm plate = box(&b, rt_vec3(-2, -2, -1), rt_vec3(2, 2, 1), 1);
     RtCsg tree = compile(&forest, &b, cut(&b, plate, ball(&b, rt_vec3(0, 0, 0), 1, 2)));
-    RtRay ray = ray_along(rt_vec3(-4, 0, 0), along_x);
-    assert_hits(&forest, &tree, ray, 4, (float[]){2, 3, 5, 6});
-    const double normals[4] = {-1, 1, -1, 1};
-    const uint32_t materials[4] = {1, 2, 2, 1};
-    for (int i = 0; i < 4; i++) {
-        RtCsgFacet facet = facet_at(&forest, &tree, &ray, (float[]){2, 3, 5, 6}[i]);
-        assert_true(facet.normal.x == normals[i] && facet.normal.y == 0 && facet.normal.z == 0);
-        assert_int_equal(forest.set.solids[facet.solid].material, materials[i]);
-    }
+    assert_faces(&forest, &tree, ray_along(rt_vec3(-4, 0, 0), along_x), 4, (float[]){2, 3, 5, 6},
+                 (double[]){-1, 1, -1, 1}, (uint32_t[]){1, 2, 2, 1});
 }
 
 RT_TEST(what_is_taken_from_what_is_taken_away_looks_outward_again) {
@@ -55,14 +59,8 @@ RT_TEST(what_is_taken_from_what_is_taken_away_looks_outward_again) {
     RtCsgTerm hole = cut(&b, ball(&b, rt_vec3(0, 0, 0), 2, 2), ball(&b, rt_vec3(0, 0, 0), 1, 3));
     RtCsgTerm all = cut(&b, box(&b, rt_vec3(-4, -4, -4), rt_vec3(4, 4, 4), 1), hole);
     RtCsg tree = compile(&forest, &b, all);
-    RtRay ray = ray_along(rt_vec3(0, 0, 0), along_x);
-    assert_hits(&forest, &tree, ray, 3, (float[]){1, 2, 4});
-    const double normals[3] = {1, -1, 1};
-    for (int i = 0; i < 3; i++) {
-        RtCsgFacet facet = facet_at(&forest, &tree, &ray, (float[]){1, 2, 4}[i]);
-        assert_true(facet.normal.x == normals[i]);
-        assert_int_equal(forest.set.solids[facet.solid].material, 3 - i);
-    }
+    assert_faces(&forest, &tree, ray_along(rt_vec3(0, 0, 0), along_x), 3, (float[]){1, 2, 4},
+                 (double[]){1, -1, 1}, (uint32_t[]){3, 2, 1});
 }
 
 RT_TEST(the_left_operand_names_a_face_that_both_have) {
@@ -73,9 +71,8 @@ RT_TEST(the_left_operand_names_a_face_that_both_have) {
     for (int op = 0; op < 2; op++) {
         for (int swapped = 0; swapped < 2; swapped++) {
             RtCsg tree = compile(&forest, &b, combine(&b, (RtCsgOp)op, swapped ? c : a, swapped ? a : c));
-            RtCsgFacet facet = facet_at(&forest, &tree, &ray, 1);
-            assert_int_equal(forest.set.solids[facet.solid].material, swapped ? 2 : 1);
-            assert_true(facet.normal.x == -1);
+            ray.tmax = 1;
+            assert_faces(&forest, &tree, ray, 1, (float[]){1}, (double[]){-1}, (uint32_t[]){swapped ? 2 : 1});
         }
     }
 }
@@ -104,11 +101,10 @@ RT_TEST(a_ray_is_answered_within_its_interval_only) {
 
 RT_TEST(a_tree_without_end_is_refused_and_leaves_nothing_behind) {
     OWNED_TREES(b, forest);
-    RtTransform place = rt_transform_identity();
     RtPlane floor = {{0, 0, 1}, 0};
     uint32_t solid;
     RtCsgTerm half;
-    assert_ok(rt_solid_add_polyhedron(&b.set, &floor, 1, &place, &solid, error));
+    assert_ok(rt_solid_add_polyhedron(&b.set, &floor, 1, NULL, &solid, error));
     assert_ok(rt_csg_solid(&b, solid, 0, &half, error));
     RtCsgTerm unit = ball(&b, rt_vec3(0, 0, 0), 1, 0);
     RtCsg tree;

@@ -141,12 +141,12 @@ RT_TEST(a_ray_with_a_short_direction_reaches_as_far_as_the_largest_t) {
 
 /* ---- triangles, number by number ----
  *
- * The vector code of core/shape/triangle.h, on triangles in place among others, returns the same bits as a
+ * The vector code of raytally/hit.h, on triangles in place among others, returns the same bits as a
  * scalar version, for difficult triangles and rays. */
 
 enum { TRIES = 400000, LANES = 4 };
 
-/* Woop, Benthin & Wald's test as described in core/shape/triangle.h, from the original ray. */
+/* Woop, Benthin & Wald's test as described in raytally/hit.h, from the original ray. */
 static bool hit_by_hand(const RtTriangle *triangle, const RtRay *ray, float *t) {
     int kz = rt_major_axis(ray->dir), kx = (kz + 1) % 3, ky = (kx + 1) % 3;
     float inv = 1 / ray->dir.at[kz], shear_x = ray->dir.at[kx] * inv, shear_y = ray->dir.at[ky] * inv;

@@ -14,9 +14,8 @@ typedef struct Case {
     float t;
 } Case;
 
-/* Finishes `g`, asks every case of its object 0, and clears it. */
-static void check(RtGeometry *g, const Case *cases, size_t count) {
-    assert_ok(rt_geometry_finish(g, error));
+/* Asks every case of object 0. */
+static void check(const RtGeometry *g, const Case *cases, size_t count) {
     for (size_t i = 0; i < count; i++) {
         RtRay ray = ray_along(cases[i].org, cases[i].dir);
         float t = NAN;
@@ -25,10 +24,12 @@ static void check(RtGeometry *g, const Case *cases, size_t count) {
         fail_msg("%s: %s at %.9g, expected %.9g", cases[i].what, met ? "hit" : "missed", (double)t,
                  (double)cases[i].t);
     }
-    rt_geometry_clear(g);
 }
 
-#define CHECK(g, cases) check(g, cases, sizeof cases / sizeof *(cases))
+/* Asks them of one object: CHECK(cases, sphere, center, radius). */
+#define CHECK(cases, shape, ...)                                                                             \
+    OWNED_OBJECT(g, shape, __VA_ARGS__);                                                                     \
+    check(&g, cases, sizeof cases / sizeof *(cases))
 
 RT_TEST(unit_normals_are_kept_bit_for_bit_and_others_made_unit) {
     const RtVec3 corners[3] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
@@ -71,9 +72,7 @@ RT_TEST(a_sphere_is_hit_from_outside_and_inside_and_touched) {
         {"behind", {{1, 2, -7}}, {{0, 0, -1}}, MISS},
         {"passing far away", {{100, 2, -7}}, {{0, 0, 1}}, MISS},
     };
-    RtGeometry g = {0};
-    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 2, 3), 2, error));
-    CHECK(&g, cases);
+    CHECK(cases, sphere, rt_vec3(1, 2, 3), 2);
 }
 
 RT_TEST(a_triangle_is_hit_on_both_sides_with_its_edges_and_vertices) {
@@ -92,9 +91,7 @@ RT_TEST(a_triangle_is_hit_on_both_sides_with_its_edges_and_vertices) {
         {"in its plane", {{-1, 1, 1}}, {{1, 0, 0}}, MISS},
         {"in its plane, along an edge", {{-1, 0, 1}}, {{1, 0, 0}}, MISS},
     };
-    RtGeometry g = {0};
-    assert_ok(rt_geometry_add_triangle(&g, (RtVec3[]){{{0, 0, 1}}, {{4, 0, 1}}, {{0, 4, 1}}}, NULL, error));
-    CHECK(&g, cases);
+    CHECK(cases, triangle, (RtVec3[]){{{0, 0, 1}}, {{4, 0, 1}}, {{0, 4, 1}}}, NULL);
 }
 
 RT_TEST(a_triangle_without_area_is_let_in_and_never_hit) {
@@ -103,9 +100,7 @@ RT_TEST(a_triangle_without_area_is_let_in_and_never_hit) {
         {"along it", {{-1, 0, 0}}, {{1, 0, 0}}, MISS},
         {"at its end", {{0, -3, 0}}, {{0, 1, 0}}, MISS},
     };
-    RtGeometry g = {0};
-    assert_ok(rt_geometry_add_triangle(&g, (RtVec3[]){{{0, 0, 0}}, {{4, 0, 0}}, {{2, 0, 0}}}, NULL, error));
-    CHECK(&g, cases);
+    CHECK(cases, triangle, (RtVec3[]){{{0, 0, 0}}, {{4, 0, 0}}, {{2, 0, 0}}}, NULL);
 }
 
 /* A U in the plane x = 2, with its notch open towards +z. */
@@ -129,11 +124,9 @@ RT_TEST(a_concave_polygon_is_missed_in_its_notch) {
         {"parallel to it", {{0, 0.5f, 2}}, {{0, 1, 0}}, MISS},
         {"in its plane", {{2, -1, 0.5f}}, {{0, 1, 0}}, MISS},
     };
-    RtGeometry g = {0};
     static const RtVec3 vertices[] = {{{2, 0, 0}}, {{2, 3, 0}}, {{2, 3, 3}}, {{2, 2, 3}},
                                       {{2, 2, 1}}, {{2, 1, 1}}, {{2, 1, 3}}, {{2, 0, 3}}};
-    assert_ok(rt_geometry_add_polygon(&g, vertices, 8, error));
-    CHECK(&g, cases);
+    CHECK(cases, polygon, vertices, 8);
 }
 
 RT_TEST(a_cylinder_is_open_at_both_ends) {
@@ -151,9 +144,7 @@ RT_TEST(a_cylinder_is_open_at_both_ends) {
         {"in by the open end, out by the wall", {{0, 0, -1}}, {{0.5f, 0, 1}}, 2},
         {"behind", {{-5, 0, 2}}, {{-1, 0, 0}}, MISS},
     };
-    RtGeometry g = {0};
-    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 4), 1, error));
-    CHECK(&g, cases);
+    CHECK(cases, cone, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 4), 1);
 }
 
 RT_TEST(a_full_cone_is_hit_up_to_its_tip) {
@@ -169,9 +160,7 @@ RT_TEST(a_full_cone_is_hit_up_to_its_tip) {
         {"on the circle", {{-5, 0, 0}}, {{1, 0, 0}}, 4},
         {"below the circle", {{-5, 0, -0.001f}}, {{1, 0, 0}}, MISS},
     };
-    RtGeometry g = {0};
-    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 1), 0, error));
-    CHECK(&g, cases);
+    CHECK(cases, cone, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 1), 0);
 }
 
 /* ---- normals ---- */

@@ -25,6 +25,12 @@ static void check_cases(const RtSolidSet *set, uint32_t index, const Case *cases
     }
 }
 
+/* A set of one solid: OWNED_SOLID(set, box, lo, hi). */
+#define OWNED_SOLID(set, kind, ...)                                                                          \
+    OWNED_SOLIDS set = {0};                                                                                  \
+    uint32_t only;                                                                                           \
+    assert_ok(rt_solid_add_##kind(&(set), __VA_ARGS__, &only, error))
+
 #define CHECK(set, index, cases) check_cases(set, index, cases, sizeof cases / sizeof *(cases))
 
 RT_TEST(a_box_has_no_skin) {
@@ -43,10 +49,8 @@ RT_TEST(a_box_has_no_skin) {
         {"touching a corner", {{2, 0, 1}}, {{-1, 1, 0}}, {NAN}},
         {"beside it", {{5, 1.5f, 0}}, {{-1, 0, 0}}, {NAN}},
     };
-    OWNED_SOLIDS set = {0};
-    uint32_t box;
-    assert_ok(rt_solid_add_box(&set, rt_vec3(-1, -1, -1), rt_vec3(1, 1, 1), &box, error));
-    CHECK(&set, box, cases);
+    OWNED_SOLID(set, box, rt_vec3(-1, -1, -1), rt_vec3(1, 1, 1));
+    CHECK(&set, 0, cases);
 }
 
 RT_TEST(a_half_space_has_no_end) {
@@ -57,22 +61,19 @@ RT_TEST(a_half_space_has_no_end) {
         {"along it, outside", {{0, 0, 2}}, {{1, 0, 0}}, {NAN}},
         {"in its plane", {{0, 0, 1}}, {{1, 0, 0}}, {NAN}},
     };
-    OWNED_SOLIDS set = {0};
-    uint32_t half;
-    assert_ok(rt_solid_add_half_space(&set, rt_vec3(7, 8, 1), rt_vec3(0, 0, 3), &half, error));
-    CHECK(&set, half, cases);
+    OWNED_SOLID(set, half_space, rt_vec3(7, 8, 1), rt_vec3(0, 0, 3));
+    CHECK(&set, 0, cases);
 }
 
 RT_TEST(a_plane_does_not_depend_on_the_length_of_its_normal) {
     OWNED_SOLIDS set = {0};
-    const RtTransform here = rt_transform_identity();
     const double lengths[] = {1, 1e150, 1e-150};
     for (uint32_t i = 0; i < 3; i++) {
         double length = lengths[i];
         RtPlane wedge[2] = {{{{3 * length, 4 * length, 0}}, 5 * length},
                             {{{-3 * length, 4 * length, 0}}, 5 * length}};
         uint32_t at;
-        assert_ok(rt_solid_add_polyhedron(&set, wedge, 2, &here, &at, error));
+        assert_ok(rt_solid_add_polyhedron(&set, wedge, 2, NULL, &at, error));
         for (uint32_t k = 0; k < 2; k++) {
             const RtPlane *plane = &set.planes[set.solids[at].first + k];
             assert_true(fabs(plane->normal.x - (k ? -0.6 : 0.6)) < 1e-15);
@@ -90,10 +91,8 @@ RT_TEST(a_sphere_that_is_touched_is_not_crossed) {
         {"touched", {{3, 2, 10}}, {{0, 0, -1}}, {NAN}},
         {"missed", {{3.5f, 2, 10}}, {{0, 0, -1}}, {NAN}},
     };
-    OWNED_SOLIDS set = {0};
-    uint32_t sphere;
-    assert_ok(rt_solid_add_ellipsoid(&set, rt_vec3(1, 2, 3), rt_vec3(2, 2, 2), &sphere, error));
-    CHECK(&set, sphere, cases);
+    OWNED_SOLID(set, ellipsoid, rt_vec3(1, 2, 3), rt_vec3(2, 2, 2));
+    CHECK(&set, 0, cases);
 }
 
 /* Apex at (0, 0, 4), base of radius 2 at z = 0. */
@@ -132,12 +131,10 @@ RT_TEST(a_cylinder_is_entered_by_cap_or_side) {
         {"touching its side", {{-1, 2, -3}}, {{1, 0, 1}}, {NAN}},
         {"outside, parallel to the axis", {{-3, 3, 1}}, {{1, 0, 0}}, {NAN}},
     };
-    OWNED_SOLIDS set = {0};
-    uint32_t cylinder;
-    assert_ok(rt_solid_add_frustum(&set, rt_vec3(0, 0, 0), 2, rt_vec3(4, 0, 0), 2, &cylinder, error));
-    CHECK(&set, cylinder, cases);
+    OWNED_SOLID(set, frustum, rt_vec3(0, 0, 0), 2, rt_vec3(4, 0, 0), 2);
+    CHECK(&set, 0, cases);
     RtRay ray = ray_along(rt_vec3(-2, 0, 0), rt_vec3(1, 0.5f, 0));
-    List list = cross(&set, cylinder, &ray);
+    List list = cross(&set, 0, &ray);
     assert_int_equal(list.at[0].face, 1);
     assert_int_equal(list.at[1].face, 0);
 }
@@ -156,14 +153,12 @@ RT_TEST(a_torus_has_a_hole) {
         {"touched at the hole", {{0, 1, 5}}, {{0, 0, -1}}, {NAN}},
         {"missed", {{-5, 0, 2.5f}}, {{1, 0, 0}}, {NAN}},
     };
-    OWNED_SOLIDS set = {0};
-    uint32_t torus;
-    assert_ok(rt_solid_add_ring(&set, rt_vec3(0, 0, 1), rt_vec3(0, 0, 7), 2, 1, &torus, error));
-    CHECK(&set, torus, cases);
+    OWNED_SOLID(set, ring, rt_vec3(0, 0, 1), rt_vec3(0, 0, 7), 2, 1);
+    CHECK(&set, 0, cases);
 
     /* In the tube, touching the hole's rim on the way: two spans that touch are one. */
     RtRay ray = ray_along(rt_vec3(1, -8, 1), rt_vec3(0, 1, 0));
-    List list = cross(&set, torus, &ray);
+    List list = cross(&set, 0, &ray);
     assert_int_equal(list.count, 2);
     assert_float_equal(list.at[0].t, 8 - sqrtf(8), 1e-6f);
     assert_float_equal(list.at[1].t, 8 + sqrtf(8), 1e-6f);

@@ -46,10 +46,9 @@ RT_TEST(a_cube_of_triangles_is_a_box_even_at_edges_and_corners) {
     OWNED_SOLIDS set = {0};
     uint32_t box, mesh;
     RtTriangle triangles[192];
-    RtTransform place = rt_transform_identity();
     uint32_t count = fine_cube_mesh(triangles);
     assert_ok(rt_solid_add_box(&set, rt_vec3(-2, -2, -2), rt_vec3(2, 2, 2), &box, error));
-    assert_ok(rt_solid_add_mesh(&set, triangles, count, &place, &mesh, error));
+    assert_ok(rt_solid_add_mesh(&set, triangles, count, NULL, &mesh, error));
     for (uint32_t from = 0; from < 7 * 7 * 7; from++) {
         for (uint32_t along = 0; along < 5 * 5 * 5; along++) {
             if (along == 62) continue; /* nowhere */
@@ -114,9 +113,7 @@ RT_TEST(lines_along_edges_and_faces_of_a_turned_mesh_keep_to_it) {
     for (int round = 0; round < 50; round++) {
         RtTransform place = rt_transform_identity();
         assert_ok(rt_transform_rotate(&place, rt_vec3(1, 2, 3), round * 10, error));
-        OWNED_SOLIDS set = {0};
-        Model models[MODELS];
-        add_models(&set, &place, models);
+        OWNED_MODELS(set, models, &place);
         const Model *cube = &models[MODELS - 2];
         const RtTriangle *triangles = set.triangles + set.solids[cube->index].first;
         for (uint32_t i = 0; i < 12; i++) {

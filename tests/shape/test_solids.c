@@ -23,9 +23,7 @@ RT_TEST(random_lines_are_inside_where_their_points_are) {
     static const double distances[] = {0, 2, 1e3, 1e5, 1e7};
     RtRandom random = rt_random(1, 0);
     RtTransform place = rt_transform_identity();
-    OWNED_SOLIDS set = {0};
-    Model models[MODELS];
-    add_models(&set, &place, models);
+    OWNED_MODELS(set, models, &place);
     for (int i = 0; i < MODELS; i++) {
         for (size_t d = 0; d < sizeof distances / sizeof *distances; d++) {
             uint32_t met = check_random_lines(&set, &models[i], &random, distances[d], 2000);
@@ -48,9 +46,7 @@ RT_TEST(so_they_are_where_solids_are_turned_stretched_and_moved) {
         double degrees = 360 * (double)rt_random_unit(&random);
         assert_ok(rt_transform_rotate(&place, rt_narrow(rt_random_direction(&random)), degrees, error));
         assert_ok(rt_transform_translate(&place, rt_random_point(&random, 3 * size), error));
-        OWNED_SOLIDS set = {0};
-        Model models[MODELS];
-        add_models(&set, &place, models);
+        OWNED_MODELS(set, models, &place);
         for (int i = 0; i < MODELS; i++) check_random_lines(&set, &models[i], &random, 5, 100);
     }
 }
@@ -90,9 +86,7 @@ RT_TEST(crossings_are_the_float32_nearest_to_the_truth) {
     for (int turned = 0; turned < 2; turned++) {
         RtTransform place = rt_transform_identity();
         if (turned) assert_ok(rt_transform_rotate(&place, rt_vec3(1, 2, 3), 30, error));
-        OWNED_SOLIDS set = {0};
-        Model models[MODELS];
-        add_models(&set, &place, models);
+        OWNED_MODELS(set, models, &place);
         for (int i = 0; i < MODELS; i++) {
             bool rounded = models[i].rounding > 0x1p-50; /* its vertices, when turned */
             if (!turned || !rounded) check_accuracy(&set, &models[i], &random);
@@ -138,9 +132,7 @@ RT_TEST(extents_hold_every_crossing) {
         assert_ok(rt_transform_scale(&place, factors, error));
         assert_ok(rt_transform_rotate(&place, rt_narrow(rt_random_direction(&random)), 77, error));
         assert_ok(rt_transform_translate(&place, rt_random_point(&random, 10), error));
-        OWNED_SOLIDS set = {0};
-        Model models[MODELS];
-        add_models(&set, &place, models);
+        OWNED_MODELS(set, models, &place);
         for (int i = 0; i < MODELS; i++) check_extents(&set, &models[i], &random);
     }
 }
@@ -172,13 +164,12 @@ RT_TEST(extents_are_tight_where_they_can_be_known) {
 RT_TEST(what_has_no_end_has_extents_without_end) {
     OWNED_SOLIDS set = {0};
     uint32_t half, oblique, slab, wedge;
-    RtTransform here = rt_transform_identity();
     RtPlane slab_planes[2] = {{{{0, 1, 0}}, 3}, {{{0, -1, 0}}, -2}},
             wedge_planes_too[2] = {{{{1, 0, 0}}, 3}, {{{0, 1, 0}}, 5}};
     assert_ok(rt_solid_add_half_space(&set, rt_vec3(0, 0, 7), rt_vec3(0, 0, 1), &half, error));
     assert_ok(rt_solid_add_half_space(&set, rt_vec3(0, 0, 7), rt_vec3(1, 1, 1), &oblique, error));
-    assert_ok(rt_solid_add_polyhedron(&set, slab_planes, 2, &here, &slab, error));
-    assert_ok(rt_solid_add_polyhedron(&set, wedge_planes_too, 2, &here, &wedge, error));
+    assert_ok(rt_solid_add_polyhedron(&set, slab_planes, 2, NULL, &slab, error));
+    assert_ok(rt_solid_add_polyhedron(&set, wedge_planes_too, 2, NULL, &wedge, error));
     const float none = INFINITY;
     const RtBox boxes[4] = {{{{-none, -none, -none}}, {{none, none, 7}}},
                             {{{-none, -none, -none}}, {{none, none, none}}},
@@ -190,7 +181,7 @@ RT_TEST(what_has_no_end_has_extents_without_end) {
     }
     const RtPlane octant_planes[3] = {{{{1, 0, 0}}, 3}, {{{0, 1, 0}}, 5}, {{{0, 0, 1}}, 7}};
     uint32_t octant;
-    assert_ok(rt_solid_add_polyhedron(&set, octant_planes, 3, &here, &octant, error));
+    assert_ok(rt_solid_add_polyhedron(&set, octant_planes, 3, NULL, &octant, error));
     assert_near(rt_solid_support(&set, octant, rt_vec3d(1, 1, 1)), 15, 1e-9);
     assert_true(isinf(rt_solid_support(&set, octant, rt_vec3d(1, 1, -1))));
     assert_near(rt_solid_support(&set, oblique, rt_vec3d(2, 2, 2)), 14, 1e-9);
@@ -208,9 +199,7 @@ RT_TEST(normals_point_out) {
     assert_ok(rt_transform_scale(&place, rt_vec3(1, 2, 3), error));
     assert_ok(rt_transform_rotate(&place, rt_vec3(1, 2, 3), 50, error));
     assert_ok(rt_transform_translate(&place, rt_vec3(5, 6, 7), error));
-    OWNED_SOLIDS set = {0};
-    Model models[MODELS];
-    add_models(&set, &place, models);
+    OWNED_MODELS(set, models, &place);
     for (int i = 0; i < MODELS; i++) {
         if (models[i].ratio == 1e-4) continue; /* as thin as the steps below are long */
         uint32_t wrong = 0, asked = 0;

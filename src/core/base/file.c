@@ -90,9 +90,7 @@ static RtStatus create_temporary(RtOutput *output, RtError *error) {
 }
 
 RtStatus rt_output_open(RtOutput *output, const char *path, RtError *error) {
-    output->file = NULL;
-    output->temporary[0] = '\0';
-    output->listed = -1;
+    *output = (RtOutput){.listed = -1};
     if (strlen(path) >= RT_MAX_PATH)
         return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
     struct stat info;
@@ -123,8 +121,10 @@ RtStatus rt_output_finish(RtOutput *output, RtError *error) {
 RtStatus rt_output_commit(RtOutput *output, RtError *error) {
     if (output->file) RT_TRY(rt_output_finish(output, error));
     RtStatus status = RT_OK;
-    if (rename(output->temporary, output->path) != 0) status = fail_io(error, "writing", output->path);
-    if (status != RT_OK) remove(output->temporary);
+    if (rename(output->temporary, output->path) != 0) {
+        status = fail_io(error, "writing", output->path);
+        remove(output->temporary);
+    }
     forget_temporary(output);
     return status;
 }

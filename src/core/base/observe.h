@@ -31,7 +31,7 @@ typedef struct RtTraced {
     uint32_t index;
     const RtBox *box; /* its box or NULL; valid during the call */
     const struct RtBall
-        *ball;        /* the sphere of an extent test (core/shape/sphere.h) or NULL; valid during the call */
+        *ball;        /* the sphere of an extent test (core/shape/shape.h) or NULL; valid during the call */
     bool leaf, empty; /* of a step: counted in leaf_steps, in empty_steps */
     bool met;
     float t;

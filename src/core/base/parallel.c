@@ -133,9 +133,7 @@ struct RtTasks {
 };
 
 static RtStatus add_task(RtTasks *tasks, const void *task, RtError *error) {
-    RT_TRY(rt_reserve(&tasks->waiting, &tasks->capacity, (uint64_t)tasks->end + 1, tasks->size, error));
-    memcpy(tasks->waiting + tasks->end++ * tasks->size, task, tasks->size);
-    return RT_OK;
+    return rt_append(&tasks->waiting, &tasks->end, &tasks->capacity, task, tasks->size, error);
 }
 
 bool rt_tasks_add(RtTasks *tasks, const void *task) {

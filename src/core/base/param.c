@@ -47,8 +47,7 @@ void rt_params_format(const RtParam *table, size_t count, const RtValue *values,
     for (size_t i = 0; i < count; i++) {
         char value[RT_MAX_SPEC_CHARS];
         rt_param_format(&table[i], values[i], value, sizeof value);
-        size_t used = strlen(out);
-        snprintf(out + used, size - used, "%s%s=%s", i ? "," : "", table[i].name, value);
+        rt_append_text(out, size, "%s%s=%s", i ? "," : "", table[i].name, value);
     }
 }
 

@@ -139,13 +139,11 @@ RtStatus rt_process_fork(RtProcess *process, int keep, RtError *error) {
         process->descriptor = (int)syscall(SYS_pidfd_open, process->pid, 0);
         while (write(go[1], "", 1) < 0 && errno == EINTR) {
         }
+        relist(0, listed_id(process));
     }
     close(go[0]);
     close(go[1]);
-    if (process->pid > 0) {
-        relist(0, listed_id(process));
-        return RT_OK;
-    }
+    if (process->pid > 0) return RT_OK;
     *process = (RtProcess){0};
     return rt_fail(error, RT_IO, "a process for a plugin: %s", strerror(why));
 }

@@ -124,15 +124,21 @@ RT_DEFINE_VECTORS(8, 4)
 RT_DEFINE_VECTORS(16, 8)
 #endif
 
+/* A function of a; of a and b. */
+#define RT_DEFINE_OF_ONE(Result, name, Type, value)                                                          \
+    RT_INLINE Result name(Type a) {                                                                          \
+        return value;                                                                                        \
+    }
+#define RT_DEFINE_OF_TWO(Type, name, value)                                                                  \
+    RT_INLINE Type name(Type a, Type b) {                                                                    \
+        return value;                                                                                        \
+    }
+
 /* ---- halves ---- */
 
 #if defined(__AVX2__)
-RT_INLINE RtFloat4 rt_lower4(RtFloat8 a) {
-    return _mm256_castps256_ps128(a);
-}
-RT_INLINE RtFloat4 rt_upper4(RtFloat8 a) {
-    return _mm256_extractf128_ps(a, 1);
-}
+RT_DEFINE_OF_ONE(RtFloat4, rt_lower4, RtFloat8, _mm256_castps256_ps128(a))
+RT_DEFINE_OF_ONE(RtFloat4, rt_upper4, RtFloat8, _mm256_extractf128_ps(a, 1))
 #else
 /* Without registers of eight gcc would move and compare lane by lane what is not in a union. */
 typedef union RtHalves {
@@ -155,26 +161,14 @@ RT_INLINE RtFloat8 rt_join4(RtFloat4 lower, RtFloat4 upper) {
  * rt_bits(mask): bit i is the sign of lane i */
 
 #define RT_DEFINE_BY_REGISTER(N, HALF, MM)                                                                   \
-    RT_INLINE RtFloat##N rt_min_float##N(RtFloat##N a, RtFloat##N b) {                                       \
-        return MM##_min_ps(a, b);                                                                            \
-    }                                                                                                        \
-    RT_INLINE RtFloat##N rt_max_float##N(RtFloat##N a, RtFloat##N b) {                                       \
-        return MM##_max_ps(a, b);                                                                            \
-    }                                                                                                        \
-    RT_INLINE RtDouble##HALF rt_min_double##HALF(RtDouble##HALF a, RtDouble##HALF b) {                       \
-        return MM##_min_pd(a, b);                                                                            \
-    }                                                                                                        \
-    RT_INLINE RtDouble##HALF rt_max_double##HALF(RtDouble##HALF a, RtDouble##HALF b) {                       \
-        return MM##_max_pd(a, b);                                                                            \
-    }
+    RT_DEFINE_OF_TWO(RtFloat##N, rt_min_float##N, MM##_min_ps(a, b))                                         \
+    RT_DEFINE_OF_TWO(RtFloat##N, rt_max_float##N, MM##_max_ps(a, b))                                         \
+    RT_DEFINE_OF_TWO(RtDouble##HALF, rt_min_double##HALF, MM##_min_pd(a, b))                                 \
+    RT_DEFINE_OF_TWO(RtDouble##HALF, rt_max_double##HALF, MM##_max_pd(a, b))
 
 #define RT_DEFINE_INTS_BY_REGISTER(N, MM, Reg)                                                               \
-    RT_INLINE RtInt##N rt_min_int##N(RtInt##N a, RtInt##N b) {                                               \
-        return (RtInt##N)MM##_min_epi32((Reg)a, (Reg)b);                                                     \
-    }                                                                                                        \
-    RT_INLINE RtInt##N rt_max_int##N(RtInt##N a, RtInt##N b) {                                               \
-        return (RtInt##N)MM##_max_epi32((Reg)a, (Reg)b);                                                     \
-    }
+    RT_DEFINE_OF_TWO(RtInt##N, rt_min_int##N, (RtInt##N)MM##_min_epi32((Reg)a, (Reg)b))                      \
+    RT_DEFINE_OF_TWO(RtInt##N, rt_max_int##N, (RtInt##N)MM##_max_epi32((Reg)a, (Reg)b))
 
 #define RT_DEFINE_BITS_BY_REGISTER(N, HALF, MM)                                                              \
     RT_INLINE uint32_t rt_bits_int##N(RtInt##N mask) {                                                       \
@@ -185,12 +179,8 @@ RT_INLINE RtFloat8 rt_join4(RtFloat4 lower, RtFloat4 upper) {
     }
 
 #define RT_DEFINE_BY_OPERATOR(Type, type)                                                                    \
-    RT_INLINE Type rt_min_##type(Type a, Type b) {                                                           \
-        return rt_select_##type(a < b, a, b);                                                                \
-    }                                                                                                        \
-    RT_INLINE Type rt_max_##type(Type a, Type b) {                                                           \
-        return rt_select_##type(a > b, a, b);                                                                \
-    }
+    RT_DEFINE_OF_TWO(Type, rt_min_##type, rt_select_##type(a < b, a, b))                                     \
+    RT_DEFINE_OF_TWO(Type, rt_max_##type, rt_select_##type(a > b, a, b))
 
 #define RT_DEFINE_BITS_BY_LANE(Type, type, lanes)                                                            \
     RT_INLINE uint32_t rt_bits_##type(Type mask) {                                                           \
@@ -215,12 +205,8 @@ RT_INLINE uint32_t rt_bits_int8(RtInt8 mask) {
     RtInt4 lower = (RtInt4)rt_lower4((RtFloat8)mask) < 0, upper = (RtInt4)rt_upper4((RtFloat8)mask) < 0;
     return vaddvq_u32((uint32x4_t)((lower & (RtInt4){1, 2, 4, 8}) | (upper & (RtInt4){16, 32, 64, 128})));
 }
-RT_INLINE RtInt4 rt_min_int4(RtInt4 a, RtInt4 b) {
-    return (RtInt4)vminq_s32((int32x4_t)a, (int32x4_t)b);
-}
-RT_INLINE RtInt4 rt_max_int4(RtInt4 a, RtInt4 b) {
-    return (RtInt4)vmaxq_s32((int32x4_t)a, (int32x4_t)b);
-}
+RT_DEFINE_OF_TWO(RtInt4, rt_min_int4, (RtInt4)vminq_s32((int32x4_t)a, (int32x4_t)b))
+RT_DEFINE_OF_TWO(RtInt4, rt_max_int4, (RtInt4)vmaxq_s32((int32x4_t)a, (int32x4_t)b))
 #elif !defined(__AVX2__)
 RT_DEFINE_BY_OPERATOR(RtInt4, int4)
 #if !defined(__SSE2__)
@@ -243,12 +229,8 @@ RT_DEFINE_BITS_BY_REGISTER(8, 4, _mm256)
     ((Result##8)rt_join4((RtFloat4)f((Type##4)rt_lower4((RtFloat8)(a)), (Type##4)rt_lower4((RtFloat8)(b))),  \
                          (RtFloat4)f((Type##4)rt_upper4((RtFloat8)(a)), (Type##4)rt_upper4((RtFloat8)(b)))))
 #define RT_DEFINE_BY_HALVES(Type, type)                                                                      \
-    RT_INLINE Type##8 rt_min_##type##8(Type##8 a, Type##8 b) {                                               \
-        return RT_HALVES(rt_min_##type##4, Type, Type, a, b);                                                \
-    }                                                                                                        \
-    RT_INLINE Type##8 rt_max_##type##8(Type##8 a, Type##8 b) {                                               \
-        return RT_HALVES(rt_max_##type##4, Type, Type, a, b);                                                \
-    }
+    RT_DEFINE_OF_TWO(Type##8, rt_min_##type##8, RT_HALVES(rt_min_##type##4, Type, Type, a, b))               \
+    RT_DEFINE_OF_TWO(Type##8, rt_max_##type##8, RT_HALVES(rt_max_##type##4, Type, Type, a, b))
 RT_DEFINE_BY_HALVES(RtFloat, float)
 RT_DEFINE_BY_HALVES(RtInt, int)
 #endif
@@ -263,27 +245,17 @@ RT_INLINE uint32_t rt_bits_int16(RtInt16 mask) {
 /* ---- square roots of doubles ---- */
 
 #if defined(__SSE2__)
-RT_INLINE RtDouble2 rt_sqrt_double2(RtDouble2 a) {
-    return _mm_sqrt_pd(a);
-}
+RT_DEFINE_OF_ONE(RtDouble2, rt_sqrt_double2, RtDouble2, _mm_sqrt_pd(a))
 #elif RT_NEON
-RT_INLINE RtDouble2 rt_sqrt_double2(RtDouble2 a) {
-    return vsqrtq_f64(a);
-}
+RT_DEFINE_OF_ONE(RtDouble2, rt_sqrt_double2, RtDouble2, vsqrtq_f64(a))
 #else
-RT_INLINE RtDouble2 rt_sqrt_double2(RtDouble2 a) {
-    return (RtDouble2){sqrt(a[0]), sqrt(a[1])};
-}
+RT_DEFINE_OF_ONE(RtDouble2, rt_sqrt_double2, RtDouble2, (RtDouble2){sqrt(a[0]), sqrt(a[1])})
 #endif
 #if defined(__AVX2__)
-RT_INLINE RtDouble4 rt_sqrt_double4(RtDouble4 a) {
-    return _mm256_sqrt_pd(a);
-}
+RT_DEFINE_OF_ONE(RtDouble4, rt_sqrt_double4, RtDouble4, _mm256_sqrt_pd(a))
 #endif
 #if RT_AVX512
-RT_INLINE RtDouble8 rt_sqrt_double8(RtDouble8 a) {
-    return _mm512_sqrt_pd(a);
-}
+RT_DEFINE_OF_ONE(RtDouble8, rt_sqrt_double8, RtDouble8, _mm512_sqrt_pd(a))
 #endif
 
 /* ---- comparisons to bits ---- */
@@ -441,44 +413,25 @@ RT_INLINE RtInt8 rt_select_bits8(uint32_t bits, RtInt8 a, RtInt8 b) {
 /* ---- rounding, and doubles ---- */
 
 #if RT_LANES > 4
-RT_INLINE RtFloats rt_floor(RtFloats a) {
-    return RT_MM(floor_ps)(a);
-}
-RT_INLINE RtFloats rt_ceil(RtFloats a) {
-    return RT_MM(ceil_ps)(a);
-}
+RT_DEFINE_OF_ONE(RtFloats, rt_floor, RtFloats, RT_MM(floor_ps)(a))
+RT_DEFINE_OF_ONE(RtFloats, rt_ceil, RtFloats, RT_MM(ceil_ps)(a))
 #elif RT_NEON
-RT_INLINE RtFloats rt_floor(RtFloats a) {
-    return vrndmq_f32(a);
-}
-RT_INLINE RtFloats rt_ceil(RtFloats a) {
-    return vrndpq_f32(a);
-}
+RT_DEFINE_OF_ONE(RtFloats, rt_floor, RtFloats, vrndmq_f32(a))
+RT_DEFINE_OF_ONE(RtFloats, rt_ceil, RtFloats, vrndpq_f32(a))
 #else
-RT_INLINE RtFloats rt_floor(RtFloats a) {
-    return (RtFloats){floorf(a[0]), floorf(a[1]), floorf(a[2]), floorf(a[3])};
-}
-RT_INLINE RtFloats rt_ceil(RtFloats a) {
-    return (RtFloats){ceilf(a[0]), ceilf(a[1]), ceilf(a[2]), ceilf(a[3])};
-}
+RT_DEFINE_OF_ONE(RtFloats, rt_floor, RtFloats,
+                 (RtFloats){floorf(a[0]), floorf(a[1]), floorf(a[2]), floorf(a[3])})
+RT_DEFINE_OF_ONE(RtFloats, rt_ceil, RtFloats, (RtFloats){ceilf(a[0]), ceilf(a[1]), ceilf(a[2]), ceilf(a[3])})
 #endif
 
 /* Four floats as doubles, and four doubles rounded to floats. gcc 12 makes five instructions of a conversion
  * by __builtin_convertvector that changes the size of a vector. */
 #if defined(__AVX2__)
-RT_INLINE RtDouble4 rt_widen4(RtFloat4 a) {
-    return _mm256_cvtps_pd(a);
-}
-RT_INLINE RtFloat4 rt_round4(RtDouble4 a) {
-    return _mm256_cvtpd_ps(a);
-}
+RT_DEFINE_OF_ONE(RtDouble4, rt_widen4, RtFloat4, _mm256_cvtps_pd(a))
+RT_DEFINE_OF_ONE(RtFloat4, rt_round4, RtDouble4, _mm256_cvtpd_ps(a))
 #else
-RT_INLINE RtDouble4 rt_widen4(RtFloat4 a) {
-    return __builtin_convertvector(a, RtDouble4);
-}
-RT_INLINE RtFloat4 rt_round4(RtDouble4 a) {
-    return __builtin_convertvector(a, RtFloat4);
-}
+RT_DEFINE_OF_ONE(RtDouble4, rt_widen4, RtFloat4, __builtin_convertvector(a, RtDouble4))
+RT_DEFINE_OF_ONE(RtFloat4, rt_round4, RtDouble4, __builtin_convertvector(a, RtFloat4))
 #endif
 
 /* The lower two of four floats as doubles. */

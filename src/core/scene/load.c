@@ -5,7 +5,6 @@
 #include "core/base/words.h"
 #include "core/scene/mesh.h"
 #include "core/scene/nff.h"
-#include "core/scene/yaml.h"
 
 #include <dirent.h>
 #include <stdio.h>

@@ -4,7 +4,6 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
-#include "core/scene/mesh_reader.h"
 
 typedef struct Format {
     const char *extension;

@@ -8,7 +8,7 @@
  *
  * A damaged file is rejected with the place of the damage, in time and memory proportional to its size. (glTF
  * may place a mesh many times, but at most 1000 vertices and corners for each byte.) That is why the readers
- * are our own (mesh_reader.h): Assimp 5 loads much of what is cut off or inconsistent, and crashes or hangs
+ * are our own: Assimp 5 loads much of what is cut off or inconsistent, and crashes or hangs
  * on some files. A child process would end a crash, but its result would still need a check that reads every
  * number of the file again. */
 #ifndef RT_SCENE_MESH_H
@@ -16,8 +16,10 @@
 
 #include "core/base/transform.h"
 #include "core/scene/scene.h"
+#include "core/text/scanner.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* The extension of format `i`, without the dot; NULL after the last. All can be read, and the first can be
  * written. */
@@ -39,5 +41,119 @@ RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error);
  * others. Rejects scenes with other shapes and names formats that support them. Materials, lights and camera
  * are not written. */
 RtStatus rt_mesh_save(const RtScene *scene, size_t i, FILE *file, RtError *error);
+
+/* ---- what the readers share: mesh_reader.c ----
+ *
+ * A reader fills `vertices`, and `normals` if there are any, and for each polygon of the file adds its
+ * corners and then the polygon. The readers trust nothing in the file: every index is checked, no count
+ * allocates more than a small multiple of the file's size, and a file that declares counts must have exactly
+ * as much. */
+
+/* Longer files are rejected, and documents of glTF without its buffers, which take 30 times as much memory.
+ */
+#define RT_MESH_MAX_BYTES ((size_t)1 << 33)
+enum { RT_MESH_MAX_JSON = 1 << 28 };
+
+#define RT_NO_NORMAL UINT32_MAX
+
+typedef struct RtMeshCorner {
+    uint32_t vertex;
+    uint32_t normal; /* RT_NO_NORMAL: none */
+} RtMeshCorner;
+
+typedef struct RtMeshReader {
+    RtScanner text; /* the whole file, with a 0 behind it; binary formats use path, at, end and error */
+    RtScene *scene;
+    uint32_t material;
+    RtTransform transform; /* of the vertices and normals */
+    uint32_t vertex_count, vertex_capacity, normal_count, normal_capacity, corner_count, corner_capacity;
+    RtVec3 *vertices;       /* [vertex_count] */
+    RtVec3 *normals;        /* [normal_count] */
+    RtMeshCorner *corners;  /* [corner_count] of the polygon being read */
+    uint32_t face_count;    /* polygons added */
+    uint32_t texture_count; /* of OBJ, to check its indices */
+} RtMeshReader;
+
+/* Fails at the line of the last word; for binary formats, where there is none, at the file. */
+#define rt_mesh_fail(r, ...) rt_fail_at((r)->text.error, (r)->text.path, (r)->text.last, 0, __VA_ARGS__)
+
+/* Rejects coordinates that are not finite. */
+RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3 vertex);
+/* Accepts any numbers: a normal that is not finite or has no length is ignored where it is used. */
+RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal);
+
+/* Adds a corner; its indices must be valid. */
+RtStatus rt_mesh_add_corner(RtMeshReader *r, RtMeshCorner corner);
+
+/* Adds a corner with vertex `index`, counted from 0, and if there are normals, that of the same index.
+ * Rejects a vertex that does not exist. */
+RtStatus rt_mesh_add_index(RtMeshReader *r, double index);
+
+/* Adds the polygon of the corners as triangles, and removes the corners. Triangles have vertex normals if all
+ * three corners do. */
+RtStatus rt_mesh_add_polygon(RtMeshReader *r);
+
+/* ---- text formats ---- */
+
+/* Takes a word that must be the first of its line, or else must be on the line of the last one. */
+RtStatus rt_mesh_take(RtMeshReader *r, bool first, const char *wanted, RtWord *word);
+/* Takes a word if there is one more on the line. */
+bool rt_mesh_more(RtMeshReader *r, RtWord *word);
+/* Takes the word `text`, wherever it is. */
+RtStatus rt_mesh_expect(RtMeshReader *r, const char *text);
+
+/* The value of a word that must be a number. Integers have at most 18 digits. */
+RtStatus rt_mesh_float(const RtMeshReader *r, RtWord word, float *out);
+RtStatus rt_mesh_integer(const RtMeshReader *r, RtWord word, int64_t *out);
+
+/* Takes three numbers of a line, the first as rt_mesh_take. */
+RtStatus rt_mesh_take_vector(RtMeshReader *r, bool first, const char *wanted, RtVec3 *out);
+
+/* Fails: the file ends after `count` of the `declared` things that its header declares. */
+RtStatus rt_mesh_fail_short(const RtMeshReader *r, uint64_t count, uint64_t declared, const char *things);
+
+/* Rejects further words, and a last line without a line break: its last number may have been cut off. */
+RtStatus rt_mesh_end(RtMeshReader *r);
+
+/* ---- the formats ---- */
+
+/* The first bytes of a binary file, and its size: what can be checked before the file is read. */
+enum { RT_MESH_HEAD = 84 };
+typedef struct RtMeshHead {
+    unsigned char bytes[RT_MESH_HEAD + 1]; /* zeros behind the end of the file */
+    uint64_t size;
+} RtMeshHead;
+
+/* Rejects a file that begins otherwise, or has another size, than its format says. */
+RtStatus rt_mesh_check_ply(RtMeshReader *r, const RtMeshHead *head);
+RtStatus rt_mesh_check_stl(RtMeshReader *r, const RtMeshHead *head);
+RtStatus rt_mesh_check_glb(RtMeshReader *r, const RtMeshHead *head);
+
+/* Each reads the whole file of r->text, and adds its triangles to r->scene. */
+RtStatus rt_mesh_read_obj(RtMeshReader *r);
+RtStatus rt_mesh_read_off(RtMeshReader *r);
+RtStatus rt_mesh_read_ply(RtMeshReader *r);
+RtStatus rt_mesh_read_stl(RtMeshReader *r);
+RtStatus rt_mesh_read_gltf(RtMeshReader *r);
+RtStatus rt_mesh_read_glb(RtMeshReader *r);
+
+/* Each writes all triangles. */
+void rt_mesh_write_obj(const RtGeometry *g, FILE *file);
+void rt_mesh_write_ply(const RtGeometry *g, FILE *file);
+void rt_mesh_write_stl(const RtGeometry *g, FILE *file);
+void rt_mesh_write_glb(const RtGeometry *g, FILE *file);
+
+/* A number of 4 bytes, low byte first, as in memory (core/text/npy.h); and three float32. */
+static inline uint32_t rt_mesh_u32(const void *at) {
+    uint32_t number;
+    memcpy(&number, at, sizeof number);
+    return number;
+}
+
+static inline RtVec3 rt_mesh_vector(const void *at) {
+    RtVec3 v;
+    memcpy(&v, at, sizeof v);
+    return v;
+}
 
 #endif

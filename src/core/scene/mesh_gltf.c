@@ -5,7 +5,7 @@
  * is inside its buffer. */
 #include "core/base/file.h"
 #include "core/base/memory.h"
-#include "core/scene/mesh_reader.h"
+#include "core/scene/mesh.h"
 
 #include <jansson.h>
 #include <stdarg.h>

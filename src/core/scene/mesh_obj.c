@@ -3,7 +3,7 @@
  * indices. Statements about names, materials, points and lines are skipped. Others are rejected: they are
  * curved surfaces, or damage. The format has no end mark and no counts, so a file that was cut off behind a
  * line break cannot be told from a whole one. */
-#include "core/scene/mesh_reader.h"
+#include "core/scene/mesh.h"
 
 #include <inttypes.h>
 

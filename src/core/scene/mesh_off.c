@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* OFF, of Geomview: the numbers of vertices, polygons and edges, then a line for each vertex and each
  * polygon. NOFF has a normal behind each vertex. Colours, which end the lines of COFF, are skipped. */
-#include "core/scene/mesh_reader.h"
+#include "core/scene/mesh.h"
 
 /* Nothing is allocated for a count: the file must have the elements. */
 static RtStatus take_count(RtMeshReader *r, uint64_t *out) {

@@ -2,7 +2,7 @@
 /* PLY (Greg Turk): a header that declares elements and their properties, then the elements as text or binary.
  * Read are x y z and nx ny nz of the element `vertex`, and the list vertex_indices of `face`; everything else
  * is skipped, but must be there. A line of text holds one element. */
-#include "core/scene/mesh_reader.h"
+#include "core/scene/mesh.h"
 
 #include <string.h>
 

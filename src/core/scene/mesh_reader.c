@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Polygons are split into a fan around their first corner if it sees all others, else by cutting off ears
  * (Meisters 1975): corners whose triangle is inside the polygon. */
-#include "core/scene/mesh_reader.h"
+#include "core/scene/mesh.h"
 
 #include "core/base/memory.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Writing meshes: every triangle with three vertices of its own. */
-#include "core/scene/mesh_reader.h"
+#include "core/scene/mesh.h"
 
 #include <inttypes.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* STL, binary or text. The normals of facets are ignored, because the order of the vertices,
  * counter-clockwise from outside, has the same information and is exact. */
-#include "core/scene/mesh_reader.h"
+#include "core/scene/mesh.h"
 
 #include <inttypes.h>
 #include <string.h>

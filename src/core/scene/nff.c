@@ -338,11 +338,8 @@ static void save_header(const RtScene *scene, FILE *file) {
     put_vector(file, "\nv\nfrom", camera->from);
     put_vector(file, "\nat", camera->at);
     put_vector(file, "\nup", camera->up);
-    fprintf(file, "\nangle");
-    put(file, camera->fov);
-    fprintf(file, "\nhither");
-    put(file, camera->near);
-    fprintf(file, "\nresolution %u %u\n", camera->width, camera->height);
+    fprintf(file, "\nangle %.9g\nhither %.9g\nresolution %u %u\n", (double)camera->fov, (double)camera->near,
+            camera->width, camera->height);
     for (uint32_t i = 0; i < scene->light_count; i++) {
         put_vector(file, "l", scene->lights[i].position);
         put_vector(file, "", scene->lights[i].intensity);
@@ -352,12 +349,8 @@ static void save_header(const RtScene *scene, FILE *file) {
 
 static void save_material(const RtMaterial *material, FILE *file) {
     put_vector(file, "f", material->color);
-    put(file, material->diffuse);
-    put(file, material->reflection);
-    put(file, material->shine);
-    put(file, material->transmission);
-    put(file, material->ior);
-    fprintf(file, "\n");
+    fprintf(file, " %.9g %.9g %.9g %.9g %.9g\n", (double)material->diffuse, (double)material->reflection,
+            (double)material->shine, (double)material->transmission, (double)material->ior);
 }
 
 static void save_polygon(const RtGeometry *g, uint32_t index, FILE *file) {

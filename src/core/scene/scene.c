@@ -53,13 +53,6 @@ RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint3
                      sizeof *material, error);
 }
 
-uint32_t rt_scene_find_material(const RtScene *scene, const char *name) {
-    for (uint32_t i = 0; i < scene->material_count; i++) {
-        if (strcmp(scene->materials[i].name, name) == 0) return i;
-    }
-    return UINT32_MAX;
-}
-
 RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, RtError *error) {
     if (!rt_finite(position) || !rt_finite(intensity))
         return rt_fail(error, RT_BAD_INPUT, "a light's position or intensity is not finite");
@@ -126,20 +119,6 @@ void rt_scene_paint_csg(RtScene *scene, uint32_t material) {
     for (uint32_t i = 0; i < tree->solid_count; i++)
         g->forest.set.solids[tree->first_solid + i].material = material;
     set_csg_material(scene);
-}
-
-RtStatus rt_scene_copy_csg(RtScene *scene, const RtScene *from, uint32_t index, const uint32_t *materials,
-                           const RtTransform *move, RtError *error) {
-    RT_TRY(reserve_material_of(scene, 0, error));
-    RT_TRY(rt_geometry_copy_csg(&scene->geometry, &from->geometry, index, move, error));
-    RtGeometry *g = &scene->geometry;
-    const RtCsg *tree = &g->csgs[g->csg_count - 1];
-    for (uint32_t i = 0; i < tree->solid_count; i++) {
-        RtSolid *solid = &g->forest.set.solids[tree->first_solid + i];
-        solid->material = materials[solid->material];
-    }
-    set_csg_material(scene);
-    return RT_OK;
 }
 
 /* The nearest point that is a valid ray origin. */
@@ -242,6 +221,19 @@ static RtStatus append_triangle(const Append *a, uint32_t material, uint32_t ind
                                  a->error);
 }
 
+static RtStatus append_csg(const Append *a, uint32_t index) {
+    RtGeometry *g = &a->to->geometry;
+    RT_TRY(reserve_material_of(a->to, 0, a->error));
+    RT_TRY(rt_geometry_copy_csg(g, &a->from->geometry, index, a->transform, a->error));
+    const RtCsg *tree = &g->csgs[g->csg_count - 1];
+    for (uint32_t i = 0; i < tree->solid_count; i++) {
+        RtSolid *solid = &g->forest.set.solids[tree->first_solid + i];
+        solid->material = a->materials[solid->material];
+    }
+    set_csg_material(a->to);
+    return RT_OK;
+}
+
 static RtStatus append_object(const Append *a, uint32_t id) {
     const RtGeometry *g = &a->from->geometry;
     uint32_t index = rt_ref_index(g->objects[id]), material = a->materials[a->from->material_of[id]];
@@ -252,7 +244,7 @@ static RtStatus append_object(const Append *a, uint32_t id) {
                                     g->polygons[index].count, a->error);
     case RT_SHAPE_TRIANGLE: return append_triangle(a, material, index);
     case RT_SHAPE_CONE: return append_cone(a, material, &g->cones[index]);
-    case RT_SHAPE_CSG: return rt_scene_copy_csg(a->to, a->from, index, a->materials, a->transform, a->error);
+    case RT_SHAPE_CSG: return append_csg(a, index);
     case RT_SHAPE_COUNT: break;
     }
     return RT_OK;
@@ -261,10 +253,12 @@ static RtStatus append_object(const Append *a, uint32_t id) {
 static RtStatus append_materials(const Append *a) {
     for (uint32_t i = 0; i < a->from->material_count; i++) {
         const RtMaterial *material = &a->from->materials[i];
-        uint32_t known = rt_scene_find_material(a->to, material->name);
-        if (known != UINT32_MAX && memcmp(&a->to->materials[known], material, sizeof *material) == 0)
-            a->materials[i] = known;
-        else
+        uint32_t known = 0;
+        while (known < a->to->material_count && strcmp(a->to->materials[known].name, material->name) != 0)
+            known++;
+        a->materials[i] = known;
+        if (known == a->to->material_count ||
+            memcmp(&a->to->materials[known], material, sizeof *material) != 0)
             RT_TRY(rt_scene_add_material(a->to, material, &a->materials[i], a->error));
     }
     return RT_OK;

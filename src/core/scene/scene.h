@@ -61,9 +61,6 @@ RtMaterial rt_default_material(void);
 /* Appends a material and returns its index; rejects values out of range. */
 RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint32_t *index, RtError *error);
 
-/* Index of the material called `name`, or UINT32_MAX. */
-uint32_t rt_scene_find_material(const RtScene *scene, const char *name);
-
 RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, RtError *error);
 
 /* Add objects, each with a material. They reject what rt_geometry_add_... rejects. */
@@ -81,10 +78,6 @@ RtStatus rt_scene_add_csg(RtScene *scene, const RtCsgBuilder *builder, RtCsgTerm
                           RtError *error);
 /* Sets the material of all solids of the tree added last. */
 void rt_scene_paint_csg(RtScene *scene, uint32_t material);
-/* Adds tree `index` of another scene, moved by `move` (NULL: in place); material i of that scene is
- * materials[i] of this one. */
-RtStatus rt_scene_copy_csg(RtScene *scene, const RtScene *from, uint32_t index, const uint32_t *materials,
-                           const RtTransform *move, RtError *error);
 
 /* Computes the boxes. If no camera was given (from = at), places one that sees the whole scene; if there
  * is no light, places one beside the camera. The sampling becomes one sample at each pixel's centre. */

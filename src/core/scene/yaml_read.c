@@ -6,8 +6,8 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/scene/formula.h"
+#include "core/scene/load.h"
 #include "core/scene/mesh.h"
-#include "core/scene/yaml.h"
 #include "core/text/yaml.h"
 
 #include <assert.h>
@@ -40,8 +40,8 @@ typedef struct Reader {
     RtError *error;
 } Reader;
 
-/* For a list X(name) of alternatives: their keys (rt_yaml_keys). */
-#define ONE_OF(name) #name "| "
+/* For a list X(name, function) of alternatives: their keys (rt_yaml_keys). */
+#define ONE_OF(name, function) #name "| "
 
 /* ---- names ---- */
 
@@ -144,8 +144,14 @@ static RtStatus read_sphere(const RtYaml *y, const RtYamlNode *n, RtVec3 *center
     return rt_yaml_float(y, n, "radius", radius);
 }
 
-/* A cone, or a cylinder: keys and values. */
-static RtStatus read_cone(const RtYaml *y, const RtYamlNode *n, bool cylinder, RtCone *cone) {
+/* The key of a value, which comes before it. */
+static const char *key_of(const RtYaml *y, const RtYamlNode *value) {
+    return rt_yaml_text_of(y, value - 1);
+}
+
+/* A cone, or a cylinder. */
+static RtStatus read_cone(const RtYaml *y, const RtYamlNode *n, RtCone *cone) {
+    const bool cylinder = strcmp(key_of(y, n), "cylinder") == 0;
     *cone = (RtCone){0};
     RT_TRY(rt_yaml_keys(
         y, n, cylinder ? "base apex radius material?" : "base base_radius apex apex_radius material?"));
@@ -193,7 +199,7 @@ static RtStatus add_materials(Reader *r, const RtYamlNode *list) {
     return RT_OK;
 }
 
-/* ---- solids: solid_KIND adds one kind and returns its index in the set ---- */
+/* ---- solids: each solid_... adds one and returns its index in the set ---- */
 
 static RtStatus solid_sphere(Reader *r, const RtYamlNode *n, uint32_t *index) {
     const RtYaml *y = &r->yaml;
@@ -216,28 +222,22 @@ static const struct Pair {
              {"box", "lo hi material?", "lo", "hi", rt_solid_add_box},
              {"half_space", "point normal material?", "point", "normal", rt_solid_add_half_space}};
 
-static RtStatus solid_pair(Reader *r, const RtYamlNode *n, const struct Pair *pair, uint32_t *index) {
+static RtStatus solid_pair(Reader *r, const RtYamlNode *n, uint32_t *index) {
+    const struct Pair *pair = pairs;
     RtVec3 first = {0}, second = {0};
+    while (strcmp(pair->kind, key_of(&r->yaml, n)) != 0) pair++;
     RT_TRY(rt_yaml_keys(&r->yaml, n, pair->keys));
     RT_TRY(rt_yaml_point(&r->yaml, n, pair->first, &first));
     RT_TRY(rt_yaml_point(&r->yaml, n, pair->second, &second));
     return rt_yaml_place(&r->yaml, pair->add(&r->builder.set, first, second, index, r->error), n, NULL);
 }
 
-static RtStatus solid_round(Reader *r, const RtYamlNode *n, bool cylinder, uint32_t *index) {
+static RtStatus solid_round(Reader *r, const RtYamlNode *n, uint32_t *index) {
     RtCone c;
-    RT_TRY(read_cone(&r->yaml, n, cylinder, &c));
+    RT_TRY(read_cone(&r->yaml, n, &c));
     RtStatus status =
         rt_solid_add_frustum(&r->builder.set, c.base, c.base_radius, c.apex, c.apex_radius, index, r->error);
     return rt_yaml_place(&r->yaml, status, n, NULL);
-}
-
-static RtStatus solid_cone(Reader *r, const RtYamlNode *n, uint32_t *index) {
-    return solid_round(r, n, false, index);
-}
-
-static RtStatus solid_cylinder(Reader *r, const RtYamlNode *n, uint32_t *index) {
-    return solid_round(r, n, true, index);
 }
 
 static RtStatus solid_torus(Reader *r, const RtYamlNode *n, uint32_t *index) {
@@ -269,7 +269,6 @@ static RtStatus read_planes(Reader *r, const RtYamlNode *list, uint32_t most, Rt
 
 static RtStatus solid_polyhedron(Reader *r, const RtYamlNode *n, uint32_t *index) {
     RT_ARENA(memory);
-    const RtTransform here = rt_transform_identity();
     RtSolidSet *set = &r->builder.set;
     RtPlane *planes;
     float *vertices;
@@ -278,9 +277,9 @@ static RtStatus solid_polyhedron(Reader *r, const RtYamlNode *n, uint32_t *index
     const RtYamlNode *list = rt_yaml_get(&r->yaml, n, "planes");
     if (list) {
         RT_TRY(read_planes(r, list, UINT32_MAX, &memory, &planes));
-        return rt_yaml_place(
-            &r->yaml, rt_solid_add_polyhedron(set, planes, rt_yaml_count(list), &here, index, r->error), list,
-            NULL);
+        return rt_yaml_place(&r->yaml,
+                             rt_solid_add_polyhedron(set, planes, rt_yaml_count(list), NULL, index, r->error),
+                             list, NULL);
     }
     RT_TRY(rt_yaml_rows(&r->yaml, n, "vertices", 4, 3, &memory, &vertices, &count));
     RtStatus status = rt_solid_add_hull(set, (const RtVec3 *)vertices, count, index, r->error);
@@ -289,7 +288,6 @@ static RtStatus solid_polyhedron(Reader *r, const RtYamlNode *n, uint32_t *index
 
 /* Reads the triangles of a file through a temporary scene. */
 static RtStatus solid_mesh(Reader *r, const RtYamlNode *n, uint32_t *index) {
-    RtTransform here = rt_transform_identity();
     RtMaterial standard = rt_default_material();
     RtScene scene;
     uint32_t material;
@@ -299,7 +297,7 @@ static RtStatus solid_mesh(Reader *r, const RtYamlNode *n, uint32_t *index) {
     if (status == RT_OK) status = append_mesh(r, n, material, &scene);
     if (status == RT_OK) {
         const RtGeometry *g = &scene.geometry;
-        status = rt_solid_add_mesh(&r->builder.set, g->triangles, g->triangle_count, &here, index, r->error);
+        status = rt_solid_add_mesh(&r->builder.set, g->triangles, g->triangle_count, NULL, index, r->error);
         status = rt_yaml_place(&r->yaml, status, n, "path");
     }
     rt_scene_clear(&scene);
@@ -310,13 +308,12 @@ _Static_assert(sizeof(RtTriangle) == 9 * sizeof(float), "a facet is a row of 9")
 
 static RtStatus solid_facets(Reader *r, const RtYamlNode *n, uint32_t *index) {
     RT_ARENA(memory);
-    const RtTransform here = rt_transform_identity();
     float *rows;
     uint32_t count;
     RT_TRY(rt_yaml_keys(&r->yaml, n, "triangles material?"));
     RT_TRY(rt_yaml_rows(&r->yaml, n, "triangles", 4, 9, &memory, &rows, &count));
     const RtTriangle *facets = (const RtTriangle *)rows;
-    RtStatus status = rt_solid_add_mesh(&r->builder.set, facets, count, &here, index, r->error);
+    RtStatus status = rt_solid_add_mesh(&r->builder.set, facets, count, NULL, index, r->error);
     return rt_yaml_place(&r->yaml, status, n, "triangles");
 }
 
@@ -387,26 +384,25 @@ static RtStatus move(Reader *r, const RtYamlNode *n, RtCsgTerm *term) {
 
 /* ---- the list ---- */
 
-/* The others. */
-#define SOLIDS(X) X(sphere) X(cylinder) X(cone) X(torus) X(polyhedron) X(mesh) X(facets) X(standard)
+#define SOLIDS(X)                                                                                            \
+    X(ellipsoid, pair)                                                                                       \
+    X(box, pair)                                                                                             \
+    X(half_space, pair)                                                                                      \
+    X(sphere, sphere) X(cylinder, round) X(cone, round) X(torus, torus) X(polyhedron, polyhedron)            \
+        X(mesh, mesh) X(facets, facets) X(standard, standard)
 
 /* Adds a solid of any kind. */
 static RtStatus solid_kind(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) {
     uint32_t index = 0, material = 0;
     const RtYamlNode *n;
     if (rt_yaml_get(&r->yaml, entry, "formula")) return read_formula(r, entry, term);
-#define ADD(kind)                                                                                            \
+#define ADD(kind, function)                                                                                  \
     if ((n = rt_yaml_get(&r->yaml, entry, #kind))) {                                                         \
         RT_TRY(find_material(r, n, &material));                                                              \
-        RT_TRY(solid_##kind(r, n, &index));                                                                  \
+        RT_TRY(solid_##function(r, n, &index));                                                              \
     }
     SOLIDS(ADD)
 #undef ADD
-    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
-        if (!(n = rt_yaml_get(&r->yaml, entry, pairs[i].kind))) continue;
-        RT_TRY(find_material(r, n, &material));
-        RT_TRY(solid_pair(r, n, &pairs[i], &index));
-    }
     return rt_csg_solid(&r->builder, index, material, term, r->error);
 }
 
@@ -424,8 +420,8 @@ static RtStatus add_solid(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) {
 
 static RtStatus add_solids(Reader *r, const RtYamlNode *list) {
     uint32_t count = rt_yaml_count(list);
-    RT_TRY(read_names(r, list, "name formula| ellipsoid| box| half_space| " SOLIDS(ONE_OF) "transform?",
-                      RT_FORMULA_MAX_NAME - 1, "solids", &r->solids));
+    RT_TRY(read_names(r, list, "name formula| " SOLIDS(ONE_OF) "transform?", RT_FORMULA_MAX_NAME - 1,
+                      "solids", &r->solids));
     r->terms = rt_arena_alloc(&r->memory, count, sizeof *r->terms);
     RT_TRY(rt_arena_check(&r->memory, "the solids", r->error));
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
@@ -452,7 +448,7 @@ static RtStatus object_csg(Reader *r, const RtYamlNode *csg) {
     return RT_OK;
 }
 
-/* ---- objects: object_KIND adds one kind ---- */
+/* ---- objects: each object_... adds one ---- */
 
 static RtStatus object_sphere(Reader *r, const RtYamlNode *n, uint32_t material) {
     RtVec3 center;
@@ -490,20 +486,12 @@ static RtStatus object_triangle(Reader *r, const RtYamlNode *n, uint32_t materia
     return rt_yaml_place(y, status, n, NULL);
 }
 
-static RtStatus object_round(Reader *r, const RtYamlNode *n, bool cylinder, uint32_t material) {
+static RtStatus object_round(Reader *r, const RtYamlNode *n, uint32_t material) {
     RtCone c;
-    RT_TRY(read_cone(&r->yaml, n, cylinder, &c));
+    RT_TRY(read_cone(&r->yaml, n, &c));
     RtStatus status =
         rt_scene_add_cone(r->scene, material, c.base, c.base_radius, c.apex, c.apex_radius, r->error);
     return rt_yaml_place(&r->yaml, status, n, NULL);
-}
-
-static RtStatus object_cone(Reader *r, const RtYamlNode *n, uint32_t material) {
-    return object_round(r, n, false, material);
-}
-
-static RtStatus object_cylinder(Reader *r, const RtYamlNode *n, uint32_t material) {
-    return object_round(r, n, true, material);
 }
 
 static RtStatus object_mesh(Reader *r, const RtYamlNode *n, uint32_t material) {
@@ -526,7 +514,9 @@ static RtStatus object_builtin(Reader *r, const RtYamlNode *n) {
 }
 
 /* Objects of one material; a tree may have one for each solid, and a built-in has its own. */
-#define PAINTED(X) X(sphere) X(polygon) X(triangle) X(cone) X(cylinder) X(mesh)
+#define PAINTED(X)                                                                                           \
+    X(sphere, sphere)                                                                                        \
+    X(polygon, polygon) X(triangle, triangle) X(cone, round) X(cylinder, round) X(mesh, mesh)
 
 static RtStatus add_object(Reader *r, const RtYamlNode *entry) {
     const RtYamlNode *n;
@@ -534,10 +524,10 @@ static RtStatus add_object(Reader *r, const RtYamlNode *entry) {
     RT_TRY(rt_yaml_keys(&r->yaml, entry, PAINTED(ONE_OF) "csg| builtin|"));
     if ((n = rt_yaml_get(&r->yaml, entry, "csg"))) return object_csg(r, n);
     if ((n = rt_yaml_get(&r->yaml, entry, "builtin"))) return object_builtin(r, n);
-#define ADD(kind)                                                                                            \
+#define ADD(kind, function)                                                                                  \
     if ((n = rt_yaml_get(&r->yaml, entry, #kind))) {                                                         \
         RT_TRY(find_material(r, n, &material));                                                              \
-        return object_##kind(r, n, material);                                                                \
+        return object_##function(r, n, material);                                                            \
     }
     PAINTED(ADD)
 #undef ADD

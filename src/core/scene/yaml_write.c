@@ -3,7 +3,7 @@
  * always suffice, 6 often. */
 #include "core/base/versions.h"
 #include "core/scene/formula.h"
-#include "core/scene/yaml.h"
+#include "core/scene/load.h"
 #include "core/text/yaml.h"
 
 #include <stdlib.h>

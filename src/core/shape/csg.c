@@ -18,14 +18,6 @@ typedef struct Machine {
     uint32_t starts[RT_CSG_MAX_LISTS + 1]; /* list i: crossings [starts[i], starts[i + 1]) */
 } Machine;
 
-static inline void start(Machine *m, const RtCsg *tree, const RtPreparedRay *ray) {
-    assert(ray->crossings);
-    m->crossings = ray->crossings;
-    m->capacity = tree->most_crossings;
-    m->depth = 0;
-    m->starts[0] = m->starts[1] = 0; /* also the result of a program without instructions */
-}
-
 /* For assertions: do `more` crossings fit behind all lists? */
 __attribute__((unused)) static inline bool has_room(const Machine *m, uint32_t more) {
     return (uint64_t)m->starts[m->depth] + more <= m->capacity;
@@ -38,15 +30,6 @@ static inline void push(Machine *m, uint32_t count) {
 }
 
 /* ---- operations ---- */
-
-static inline bool holds(RtCsgOp op, bool in_left, bool in_right) {
-    switch (op) {
-    case RT_CSG_UNION: return in_left || in_right;
-    case RT_CSG_INTERSECTION: return in_left && in_right;
-    case RT_CSG_DIFFERENCE: return in_left && !in_right;
-    }
-    return false;
-}
 
 /* The merging rule of csg.h, place by place. A NaN cannot stall the loop. */
 static uint32_t merge(RtCsgOp op, const RtCrossing *left, const RtCrossing *left_end, const RtCrossing *right,
@@ -62,7 +45,7 @@ static uint32_t merge(RtCsgOp op, const RtCrossing *left, const RtCrossing *left
         bool left_turns = (left - from_left) % 2, right_turns = (right - from_right) % 2;
         in_left ^= left_turns;
         in_right ^= right_turns;
-        bool now = holds(op, in_left, in_right);
+        bool now = rt_csg_joined(op, in_left, in_right);
         if (now == inside) continue;
         inside = now;
         out[count++] = left_turns && in_left == inside ? *from_left : *from_right;
@@ -117,6 +100,11 @@ INLINE void run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, const 
                 RtTally *tally) {
     const RtCsgInstruction *program = forest->instructions + tree->first;
     float enter;
+    assert(ray->thick.crossings);
+    m->crossings = ray->thick.crossings;
+    m->capacity = tree->most_crossings;
+    m->depth = 0;
+    m->starts[0] = m->starts[1] = 0; /* also the result of a program without instructions */
     for (uint32_t i = 0; i < tree->count; i++) {
         RtCsgInstruction instruction = program[i];
         switch ((RtCsgOpcode)instruction.code) {
@@ -158,7 +146,6 @@ INLINE bool search(const RtCsgForest *forest, const RtCsg *tree, const RtPrepare
     if (!comes_near(tree, ray)) return false;
     RtSolidRay solid = solid_ray(tree, ray);
     Machine m;
-    start(&m, tree, ray);
     run(&m, forest, tree, &solid, tally);
     bool found = false;
     for (uint32_t i = 0; i < m.starts[1] && !found; i++) {
@@ -178,7 +165,6 @@ bool rt_csg_hit(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRa
 RtCsgFacet rt_csg_facet(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRay *ray, float t) {
     RtSolidRay solid = solid_ray(tree, ray);
     Machine m;
-    start(&m, tree, ray);
     run(&m, forest, tree, &solid, NULL);
     const RtCrossing *best = NULL;
     float least = INFINITY;

@@ -32,6 +32,12 @@
 
 typedef enum RtCsgOp { RT_CSG_UNION, RT_CSG_INTERSECTION, RT_CSG_DIFFERENCE } RtCsgOp;
 
+/* Is a point with these insides inside the result? */
+static inline bool rt_csg_joined(RtCsgOp op, bool in_left, bool in_right) {
+    if (op == RT_CSG_UNION) return in_left || in_right;
+    return in_left && in_right == (op == RT_CSG_INTERSECTION);
+}
+
 /* ---- making a tree ---- */
 
 /* A part of a tree under construction: a solid, or an operation on other terms. It may be used any number of

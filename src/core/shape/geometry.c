@@ -73,10 +73,8 @@ RtStatus rt_geometry_add_sphere(RtGeometry *geometry, RtVec3 center, float radiu
 /* Newell's normal: twice the area of the polygon along its normal, about vertex 0 for precision. */
 static RtVec3d newell(const RtVec3 *vertices, uint32_t count) {
     RtVec3d sum = {0, 0, 0}, origin = rt_widen(vertices[0]);
-    for (uint32_t i = 1; i + 1 < count; i++) {
-        RtVec3d a = rt_subd(rt_widen(vertices[i]), origin), b = rt_subd(rt_widen(vertices[i + 1]), origin);
-        sum = rt_addd(sum, rt_crossd(a, b));
-    }
+    for (uint32_t i = 1; i + 1 < count; i++)
+        sum = rt_addd(sum, rt_area_vector(origin, rt_widen(vertices[i]), rt_widen(vertices[i + 1])));
     return sum;
 }
 

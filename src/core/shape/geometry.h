@@ -7,11 +7,8 @@
 
 #include "core/base/ray.h"
 #include "core/base/status.h"
-#include "core/shape/cone.h"
 #include "core/shape/csg.h"
-#include "core/shape/polygon.h"
-#include "core/shape/sphere.h"
-#include "core/shape/triangle.h"
+#include "core/shape/shape.h"
 
 /* X(CONSTANT, name, Type): `name` in the singular; the array is called name##s. */
 #define RT_SHAPES(X)                                                                                         \

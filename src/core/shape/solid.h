@@ -27,8 +27,7 @@
 #include "core/base/ray.h"
 #include "core/base/status.h"
 #include "core/base/transform.h"
-#include "core/shape/sphere.h"
-#include "core/shape/triangle.h"
+#include "core/shape/shape.h"
 
 /* X(CONSTANT, name) */
 #define RT_SOLID_KINDS(X)                                                                                    \
@@ -82,8 +81,9 @@ typedef struct RtSolidSet {
 void rt_solid_set_clear(RtSolidSet *set);
 uint64_t rt_solid_set_bytes(const RtSolidSet *set);
 
-/* Each adds a solid, given in object space with its transform to world space, and returns its index. They
- * reject what is not finite, flat, empty, or beyond RT_MAX_COORDINATE; then nothing changes. */
+/* Each adds a solid, given in object space with its transform to world space (for a polyhedron or a mesh also
+ * NULL: the same), and returns its index. They reject what is not finite, flat, empty, or beyond
+ * RT_MAX_COORDINATE; then nothing changes. */
 RtStatus rt_solid_add_sphere(RtSolidSet *set, const RtTransform *to_world, uint32_t *index, RtError *error);
 RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
                            RtError *error);

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Solids by the parameters of scene files. */
 #include "core/base/memory.h"
-#include "core/shape/cone.h"
 #include "core/shape/solid_parts.h"
 
 /* ---- polyhedra ---- */
 
 RtStatus rt_solid_add_box(RtSolidSet *set, RtVec3 lo, RtVec3 hi, uint32_t *index, RtError *error) {
-    RtTransform here = rt_transform_identity();
     RtPlane planes[3][2] = {0};
     for (int a = 0; a < 3; a++) {
         if (!(lo.at[a] < hi.at[a]))
@@ -16,17 +14,16 @@ RtStatus rt_solid_add_box(RtSolidSet *set, RtVec3 lo, RtVec3 hi, uint32_t *index
         planes[a][0].normal.at[a] = -1, planes[a][0].offset = -(double)lo.at[a];
         planes[a][1].normal.at[a] = 1, planes[a][1].offset = (double)hi.at[a];
     }
-    return rt_solid_add_polyhedron(set, planes[0], 6, &here, index, error);
+    return rt_solid_add_polyhedron(set, planes[0], 6, NULL, index, error);
 }
 
 RtStatus rt_solid_add_half_space(RtSolidSet *set, RtVec3 point, RtVec3 normal, uint32_t *index,
                                  RtError *error) {
-    RtTransform here = rt_transform_identity();
     if (!rt_finite(point) || !rt_finite(normal) || rt_lengthd(rt_widen(normal)) == 0)
         return rt_fail(error, RT_BAD_INPUT,
                        "a half-space needs a point and a normal of finite numbers, the normal not 0");
     RtPlane plane = rt_plane_through(rt_widen(point), rt_widen(normal));
-    return rt_solid_add_polyhedron(set, &plane, 1, &here, index, error);
+    return rt_solid_add_polyhedron(set, &plane, 1, NULL, index, error);
 }
 
 /* ---- round solids ---- */
@@ -97,20 +94,11 @@ RtStatus rt_solid_add_ring(RtSolidSet *set, RtVec3 center, RtVec3 axis, float ma
 typedef struct Cloud {
     const RtVec3 *points;
     uint32_t count;
-    double close; /* distance within which a point counts as in a plane */
+    double close; /* a few ulps of the largest coordinate: so near a plane, a point counts as in it */
 } Cloud;
 
 static RtVec3d point_of(const Cloud *cloud, uint32_t i) {
     return rt_widen(cloud->points[i]);
-}
-
-/* A few ulps of the largest coordinate. */
-static double closeness(const RtVec3 *points, uint32_t count) {
-    double most = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        for (int a = 0; a < 3; a++) most = fmax(most, fabs((double)points[i].at[a]));
-    }
-    return 0x1p-21 * most;
 }
 
 static double height_above(const RtPlane *plane, RtVec3d point) {
@@ -207,18 +195,19 @@ RtStatus rt_solid_add_hull(RtSolidSet *set, const RtVec3 *vertices, uint32_t cou
         return rt_fail(error, RT_BAD_INPUT,
                        "a convex polyhedron of %u vertices: expected 4..%d; use a mesh for more", count,
                        RT_SOLID_MAX_VERTICES);
+    RtBox box = RT_EMPTY_BOX;
     for (uint32_t i = 0; i < count; i++) {
-        if (rt_finite(vertices[i])) continue;
-        return rt_fail(error, RT_BAD_INPUT, "vertex %u of the polyhedron is not finite", i);
+        if (!rt_finite(vertices[i]))
+            return rt_fail(error, RT_BAD_INPUT, "vertex %u of the polyhedron is not finite", i);
+        box = rt_box_add_point(box, vertices[i]);
     }
-    Cloud cloud = {vertices, count, closeness(vertices, count)};
+    Cloud cloud = {vertices, count, 0x1p-21 * rt_box_largest_coordinate(box)};
     RT_ARENA(memory);
     RtPlane *planes = rt_arena_alloc(&memory, RT_SOLID_MAX_FACES, sizeof *planes);
     RT_TRY(rt_arena_check(&memory, "the faces of a polyhedron", error));
     uint32_t faces = find_faces(&cloud, planes, RT_SOLID_MAX_FACES);
-    RtTransform here = rt_transform_identity();
     if (faces < 4)
         return rt_fail(error, RT_BAD_INPUT,
                        "the %u vertices of the polyhedron are in one plane, or nearly so", count);
-    return rt_solid_add_polyhedron(set, planes, faces, &here, index, error);
+    return rt_solid_add_polyhedron(set, planes, faces, NULL, index, error);
 }

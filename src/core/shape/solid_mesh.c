@@ -4,7 +4,7 @@
  *
  * Whether a line crosses a triangle is decided by the winding number of the triangle's outline about the
  * line, seen along it: moved to the origin and sheared until the ray is the z axis, as in
- * core/shape/triangle.h. The number is counted on the half line y = 0, x > 0: an edge from below (y < 0) to
+ * raytally/hit.h. The number is counted on the half line y = 0, x > 0: an edge from below (y < 0) to
  * above that passes to the right of the origin counts 1, its reverse -1, any other 0. An edge's contribution
  * is computed from its lower end to its upper one, whatever its direction. So both triangles at an edge
  * compute the same bits with opposite signs, and the contributions of all triangles add up to 0 exactly,
@@ -328,6 +328,8 @@ RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_
     if (count < 4)
         return rt_fail(error, RT_BAD_INPUT, "a closed mesh needs at least 4 triangles, this one has %u",
                        count);
+    const RtTransform here = rt_transform_identity();
+    if (!to_world) to_world = &here;
     RT_TRY(rt_solid_check_transform(to_world, error));
     RT_TRY(rt_reserve(&set->triangles, &set->triangle_capacity, (uint64_t)set->triangle_count + count,
                       sizeof(RtTriangle), error));
@@ -341,10 +343,7 @@ RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_
         }
     }
     RT_TRY(check_and_order(own, count, error));
-    RtSolid solid = {.kind = RT_SOLID_MESH,
-                     .first = set->triangle_count,
-                     .count = count,
-                     .to_world = rt_transform_identity()};
+    RtSolid solid = {.kind = RT_SOLID_MESH, .first = set->triangle_count, .count = count, .to_world = here};
     RT_TRY(rt_solid_mesh_boxes(set, &solid, error));
     return rt_solid_finish(set, &solid, rt_solid_mesh_support, index, error);
 }

@@ -209,11 +209,12 @@ RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_
     if (count == 0 || count > RT_SOLID_MAX_FACES)
         return rt_fail(error, RT_BAD_INPUT, "a polyhedron of %u planes: expected 1..%d", count,
                        RT_SOLID_MAX_FACES);
+    const RtTransform here = rt_transform_identity();
+    if (!to_world) to_world = &here;
     RT_TRY(rt_solid_check_transform(to_world, error));
     RT_TRY(rt_reserve(&set->planes, &set->plane_capacity, (uint64_t)set->plane_count + count, sizeof(RtPlane),
                       error));
     RtPlane *own = set->planes + set->plane_count;
-    RtTransform here = rt_transform_identity();
     bool stays = memcmp(to_world, &here, sizeof here) == 0;
     for (uint32_t i = 0; i < count; i++) {
         RT_TRY(check_plane(&planes[i], i, error));
@@ -225,9 +226,7 @@ RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_
                            fabs(own[i].offset), (double)RT_MAX_COORDINATE);
     }
     RT_TRY(rt_solid_check_inside(own, count, error));
-    RtSolid solid = {.kind = RT_SOLID_POLYHEDRON,
-                     .first = set->plane_count,
-                     .count = count,
-                     .to_world = rt_transform_identity()};
+    RtSolid solid = {
+        .kind = RT_SOLID_POLYHEDRON, .first = set->plane_count, .count = count, .to_world = here};
     return rt_solid_finish(set, &solid, rt_solid_polyhedron_support, index, error);
 }

@@ -12,7 +12,7 @@ static RtVec3d column(const RtSolid *solid, int i) {
 /* ---- spheres ----
  *
  * The unit ball under its transform: p = to_world(q), |q| <= 1. The hit is computed about the point of the
- * line nearest to the centre (core/shape/sphere.h): the half chord is sqrt(1 - |l|^2), with l the vector
+ * line nearest to the centre (raytally/hit.h): the half chord is sqrt(1 - |l|^2), with l the vector
  * to that point. */
 uint32_t rt_solid_sphere_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,
                                    float far, RtCrossing *out) {

@@ -35,34 +35,6 @@ static bool is_measured(const RtTableColumn *column) {
 
 /* ---- fields ---- */
 
-RtField rt_field_missing(void) {
-    return (RtField){.is = RT_FIELD_MISSING};
-}
-
-RtField rt_field_text(const char *text) {
-    return (RtField){.is = text ? RT_FIELD_TEXT : RT_FIELD_MISSING, .text = text};
-}
-
-RtField rt_field_flag(bool flag) {
-    return (RtField){.is = RT_FIELD_FLAG, .integer = flag};
-}
-
-RtField rt_field_integer(uint64_t integer) {
-    return (RtField){.is = RT_FIELD_INTEGER, .integer = integer};
-}
-
-RtField rt_field_real(double real) {
-    return (RtField){.is = isfinite(real) ? RT_FIELD_REAL : RT_FIELD_MISSING, .real = real};
-}
-
-RtField rt_field_interval(double value, double low, double high) {
-    return (RtField){.is = RT_FIELD_INTERVAL, .real = value, .low = low, .high = high};
-}
-
-RtField rt_field_same(RtField field) {
-    return field;
-}
-
 RtField rt_field_print(const char *format, ...) {
     RtField field = {.is = RT_FIELD_TEXT};
     va_list args;
@@ -399,23 +371,14 @@ void rt_table_markdown(const RtTable *table, FILE *out) {
 /* ---- LaTeX ---- */
 
 static void put_tex_text(const char *text, FILE *out) {
+    static const char named[] = "\\~^<>|";
+    static const char *const names[] = {"backslash", "asciitilde", "asciicircum", "less", "greater", "bar"};
     for (; *text; text++) {
-        switch (*text) {
-        case '\\': fputs("\\textbackslash{}", out); break;
-        case '~': fputs("\\textasciitilde{}", out); break;
-        case '^': fputs("\\textasciicircum{}", out); break;
-        case '<': fputs("\\textless{}", out); break;
-        case '>': fputs("\\textgreater{}", out); break;
-        case '|': fputs("\\textbar{}", out); break;
-        case '&':
-        case '%':
-        case '$':
-        case '#':
-        case '_':
-        case '{':
-        case '}': fprintf(out, "\\%c", *text); break;
-        default: fputc(*text, out);
-        }
+        const char *at = strchr(named, *text);
+        if (at)
+            fprintf(out, "\\text%s{}", names[at - named]);
+        else
+            fprintf(out, strchr("&%$#_{}", *text) ? "\\%c" : "%c", *text);
     }
 }
 

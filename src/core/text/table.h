@@ -19,6 +19,7 @@
 #define RT_TEXT_TABLE_H
 
 #include <jansson.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -75,13 +76,35 @@ typedef struct RtField {
     char buffer[RT_MAX_FIELD];
 } RtField;
 
-RtField rt_field_missing(void);
-RtField rt_field_text(const char *text); /* NULL: missing */
-RtField rt_field_flag(bool flag);
-RtField rt_field_integer(uint64_t integer);
-RtField rt_field_real(double real); /* NAN and infinities: missing */
-RtField rt_field_interval(double value, double low, double high);
-RtField rt_field_same(RtField field);
+static inline RtField rt_field_missing(void) {
+    return (RtField){.is = RT_FIELD_MISSING};
+}
+
+/* NULL: missing. */
+static inline RtField rt_field_text(const char *text) {
+    return (RtField){.is = text ? RT_FIELD_TEXT : RT_FIELD_MISSING, .text = text};
+}
+
+static inline RtField rt_field_flag(bool flag) {
+    return (RtField){.is = RT_FIELD_FLAG, .integer = flag};
+}
+
+static inline RtField rt_field_integer(uint64_t integer) {
+    return (RtField){.is = RT_FIELD_INTEGER, .integer = integer};
+}
+
+/* NAN and infinities: missing. */
+static inline RtField rt_field_real(double real) {
+    return (RtField){.is = isfinite(real) ? RT_FIELD_REAL : RT_FIELD_MISSING, .real = real};
+}
+
+static inline RtField rt_field_interval(double value, double low, double high) {
+    return (RtField){.is = RT_FIELD_INTERVAL, .real = value, .low = low, .high = high};
+}
+
+static inline RtField rt_field_same(RtField field) {
+    return field;
+}
 
 /* A printed text, truncated if it does not fit. */
 __attribute__((format(printf, 1, 2))) RtField rt_field_print(const char *format, ...);

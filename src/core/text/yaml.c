@@ -156,10 +156,9 @@ static RtStatus add_scalar(Builder *b) {
 static RtStatus open_node(Builder *b, RtYamlKind kind) {
     RtYamlNode *node;
     RT_TRY(add_node(b, kind, &node));
-    if (b->depth == RT_YAML_MAX_DEPTH) {
+    if (b->depth == RT_YAML_MAX_DEPTH)
         return rt_yaml_fail(b->yaml, node, "lists and mappings are nested more than %d deep here",
                             RT_YAML_MAX_DEPTH);
-    }
     b->open[b->depth++] = b->yaml->node_count - 1;
     return RT_OK;
 }
@@ -183,9 +182,8 @@ static RtStatus add_event(Builder *b) {
 static RtStatus add_document(Builder *b) {
     RT_TRY(next_event(b)); /* start of stream */
     RT_TRY(next_event(b));
-    if (b->event.type == YAML_STREAM_END_EVENT) {
+    if (b->event.type == YAML_STREAM_END_EVENT)
         return rt_fail_at(b->yaml->error, b->yaml->path, 1, 0, "the file is empty");
-    }
     do {
         RT_TRY(next_event(b));
         RT_TRY(add_event(b));
@@ -211,10 +209,9 @@ static RtStatus refuse_directives(const Builder *b, size_t length) {
 RtStatus rt_yaml_parse(RtYaml *yaml, const char *name, const char *text, size_t length, RtError *error) {
     *yaml = (RtYaml){.path = name, .error = error};
     Builder b = {.yaml = yaml, .text = text};
-    if (length > RT_YAML_MAX_BYTES) {
+    if (length > RT_YAML_MAX_BYTES)
         return rt_fail_at(error, name, 0, 0, "the file has %zu bytes: the limit is %d", length,
                           RT_YAML_MAX_BYTES);
-    }
     RT_TRY(refuse_directives(&b, length));
     if (!yaml_parser_initialize(&b.parser)) return rt_fail_memory(error, "parsing YAML", 0);
     yaml_parser_set_encoding(&b.parser, YAML_UTF8_ENCODING);
@@ -346,10 +343,9 @@ RtStatus rt_yaml_list(const RtYaml *yaml, const RtYamlNode *node, const char *ke
         snprintf(expected, sizeof expected, "a list of %s%s", number, what);
         return fail_unexpected(yaml, list, expected);
     }
-    if (list->count < least) {
+    if (list->count < least)
         return rt_yaml_fail(yaml, list, "the length of the list is %u: expected at least %u", list->count,
                             least);
-    }
     if (list->count <= most) return RT_OK;
     const RtYamlNode *extra = list + 1;
     for (uint32_t i = 0; i < most; i++) extra += extra->size;
@@ -365,10 +361,9 @@ static RtStatus read_number(const RtYaml *yaml, const RtYamlNode *node, float *n
     const char *text = rt_yaml_text_of(yaml, node);
     char *end;
     double value = narrow ? (double)strtof(text, &end) : strtod(text, &end);
-    if (end == text || *end || !isfinite(value)) {
+    if (end == text || *end || !isfinite(value))
         return rt_yaml_fail(yaml, node, "invalid value '%.60s': expected a finite number%s, as in 1.5", text,
                             narrow ? " that fits float32" : "");
-    }
     if (narrow) *narrow = (float)value;
     if (wide) *wide = value;
     return RT_OK;
