@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
 
-#include "accel/accel.h"
 #include "cli/jobs.h"
 #include "cli/plugins.h"
-#include "core/base/memory.h"
-#include "core/text/json.h"
 
 #include <assert.h>
 #include <errno.h>

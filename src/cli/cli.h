@@ -7,9 +7,6 @@
 #ifndef RT_CLI_CLI_H
 #define RT_CLI_CLI_H
 
-#include "core/base/ray.h"
-#include "core/base/status.h"
-#include "core/scene/camera.h"
 #include "results/result_directory.h"
 
 #include <argp.h>

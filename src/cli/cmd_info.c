@@ -147,21 +147,6 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
 
 /* ---- the command ---- */
 
-static RtStatus show(const RtScene *scene, const Options *o, RtError *error) {
-    Counts counts = count(scene);
-    RtExtentsTable table;
-    if (o->extents) RT_TRY(rt_extents_table(&table, scene, o->every_slabs, o->rays, o->seed, error));
-    if (o->json) {
-        json_t *info = info_json(scene, &counts);
-        if (o->extents) json_object_set_new(info, "extents", rt_extents_table_json(&table));
-        rt_cli_print_json(info);
-    } else {
-        print_info(scene, &counts);
-        if (o->extents) rt_extents_table_print(&table, stdout);
-    }
-    return RT_OK;
-}
-
 const RtSyntax rt_info_syntax = {.options = options,
                                  RT_ONE_SCENE,
                                  .help =
@@ -171,11 +156,20 @@ const RtSyntax rt_info_syntax = {.options = options,
 
 RtStatus rt_command_info(int argc, char **argv, RtError *error) {
     Options o = {.rays = 100000, .seed = 1};
-    RtScene scene;
+    RT_OWNED(RtScene, scene, rt_scene_clear);
+    RtExtentsTable table;
     rt_cli_parse(&rt_info_syntax, argc, argv, &o);
     if (o.json) RT_TRY(rt_cli_check_json_name(o.scene, error));
     RT_TRY(rt_scene_open(o.scene, &scene, error));
-    RtStatus status = show(&scene, &o, error);
-    rt_scene_clear(&scene);
-    return status;
+    const Counts counts = count(&scene);
+    if (o.extents) RT_TRY(rt_extents_table(&table, &scene, o.every_slabs, o.rays, o.seed, error));
+    if (o.json) {
+        json_t *info = info_json(&scene, &counts);
+        if (o.extents) json_object_set_new(info, "extents", rt_extents_table_json(&table));
+        rt_cli_print_json(info);
+    } else {
+        print_info(&scene, &counts);
+        if (o.extents) rt_extents_table_print(&table, stdout);
+    }
+    return RT_OK;
 }

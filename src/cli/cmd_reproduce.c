@@ -47,7 +47,7 @@ static RtStatus count_again(RtResults *results, const RtSelection *only, RtError
     RtProgress progress;
     rt_progress_begin(&progress, &options);
     RtStatus status = rt_workloads_run(results, &options, error);
-    rt_progress_end(&progress);
+    rt_progress_clear();
     return status;
 }
 
@@ -139,12 +139,11 @@ static RtStatus compare_file(Again *again, RtResultFile file, RtError *error) {
 
 static RtStatus compare_all(Again *again, RtError *error) {
     const RtExperiment *experiment = again->results->experiment;
-    RtStatus status = RT_OK;
-    for (RtResultFile file = 0; status == RT_OK && file < RT_RESULT_FILE_COUNT; file++) {
+    for (RtResultFile file = 0; file < RT_RESULT_FILE_COUNT; file++) {
         if (rt_result_file_sort(experiment, file) == RT_FILE_COUNTED)
-            status = compare_file(again, file, error);
+            RT_TRY(compare_file(again, file, error));
     }
-    if (status != RT_OK || !again->missing) return status;
+    if (!again->missing) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
                    "%s: '%s' was not compared, because its scene is missing here: get it first, as "
                    "`scenes/fetch.sh` does for the public meshes, or start raytally where it was measured",
@@ -153,7 +152,7 @@ static RtStatus compare_all(Again *again, RtError *error) {
 
 /* Says why counts of another version may differ. */
 static void tell_version(const char *directory) {
-    json_t *manifest;
+    json_auto_t *manifest = NULL;
     if (rt_manifest_read(directory, &manifest, NULL) != RT_OK) return;
     const json_t *counts = json_object_get(manifest, "counts");
     if (counts && json_integer_value(counts) != RT_COUNTS_VERSION)
@@ -161,7 +160,6 @@ static void tell_version(const char *directory) {
                 "raytally: %s has counts of version %" JSON_INTEGER_FORMAT
                 ", and this raytally makes version %d: some may differ (tests/golden/CHANGES.md)\n",
                 directory, json_integer_value(counts), RT_COUNTS_VERSION);
-    json_decref(manifest);
 }
 
 /* A scene that is another than it was is the reason for other counts. */

@@ -162,7 +162,7 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     go_on(o, results->experiment, command);
     rt_stop_continue(how->directory, command);
     RtStatus status = rt_run_experiment(results, how, error);
-    rt_progress_end(&progress);
+    rt_progress_clear();
     if (status != RT_OK) return status;
     rt_print_summary(results, stdout);
     if (!how->workload.only.part_count && !how->workload.only.shards)
@@ -199,7 +199,7 @@ static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtE
 
 /* With --resume and --force, says what cannot be resumed, and starts it over. */
 static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError *error) {
-    RtResults results;
+    RT_OWNED(RtResults, results, rt_results_clear);
     RtRunOptions *how = &o->how;
     bool goes_on;
     char path[RT_MAX_PATH];
@@ -210,7 +210,6 @@ static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError
     if (status == RT_OK && goes_on) {
         status = rt_results_init(&results, experiment, error);
         if (status == RT_OK) status = rt_journal_load(path, &results, &how->workload.only, error);
-        rt_results_clear(&results);
     }
     if (status != RT_BAD_INPUT) return status;
     fprintf(stderr, "raytally: %s; --force starts %s over\n", error->message, how->directory);
@@ -220,7 +219,7 @@ static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError
 
 static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     RtRunOptions *how = &o->how;
-    RtResults results;
+    RT_OWNED(RtResults, results, rt_results_clear);
     RT_TRY(load(o, experiment, error));
     if (*experiment->warning.message) fprintf(stderr, "raytally: %s\n", experiment->warning.message);
     RT_TRY(rt_selection_check(&how->workload.only, experiment, error));
@@ -234,11 +233,8 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     RT_TRY(choose_start(o, experiment, error));
     if (o->threads >= 0) how->workload.threads = how->workload.timing = o->threads;
     if (!o->found && how->scripts == RT_SCRIPTS_SHIPPED) how->scripts = RT_SCRIPTS_OWN;
-    RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK)
-        status = o->dry ? dry_run(&results, how, o->count == 1, error) : measure(o, &results, error);
-    rt_results_clear(&results);
-    return status;
+    RT_TRY(rt_results_init(&results, experiment, error));
+    return o->dry ? dry_run(&results, how, o->count == 1, error) : measure(o, &results, error);
 }
 
 /* ---- several ---- */

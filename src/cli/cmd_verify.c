@@ -434,7 +434,7 @@ static void print_answer(const char *where, const RtFailure *failure, const RtAn
 
 /* Traces the ray in the original scene and in the shrunk one; one of them suffices. */
 static RtStatus replay(const Options *o, bool *failed, RtError *error) {
-    RtReplay file;
+    RT_OWNED(RtReplay, file, rt_replay_clear);
     RtStatus status = RT_OK;
     RT_TRY(rt_replay_load(&file, o->replay, error));
     file.failure.threads = o->work.rays.threads;
@@ -453,7 +453,6 @@ static RtStatus replay(const Options *o, bool *failed, RtError *error) {
             status = RT_OK;
         }
     }
-    rt_replay_clear(&file);
     if (status != RT_OK || asked > 0) return status;
     return rt_fail(error, RT_BAD_INPUT, "%s: the ray cannot be traced again", o->replay);
 }

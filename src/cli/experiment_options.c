@@ -2,7 +2,6 @@
 #include "cli/experiment_options.h"
 
 #include "cli/cli.h"
-#include "render/frame.h"
 #include "run/callgrind.h"
 #include "verify/spread.h"
 

@@ -38,7 +38,4 @@ void rt_progress_notice(void *context, const char *message);
 #define RT_MAX_DURATION 32
 void rt_format_duration(double seconds, char out[RT_MAX_DURATION]);
 
-/* Clears the line. */
-void rt_progress_end(const RtProgress *progress);
-
 #endif

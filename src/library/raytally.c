@@ -497,7 +497,7 @@ uint64_t raytally_rays_fingerprint(const raytally_rays *rays) {
 
 raytally_status raytally_render(const raytally_accelerator *accelerator, uint32_t depth, int threads,
                                 const char *png, float *rgb, raytally_error *error) {
-    RtFrame frame = {0};
+    RT_OWNED(RtFrame, frame, rt_frame_clear);
     RtFrameOptions options = {.depth = depth ? depth : RT_DEFAULT_DEPTH, .threads = threads};
     RT_C_LOCALE;
     RtStatus status = rt_threads_check(threads, rt_error_of(error));
@@ -509,6 +509,5 @@ raytally_status raytally_render(const raytally_accelerator *accelerator, uint32_
             memcpy(rgb, &color, sizeof color);
         }
     }
-    rt_frame_clear(&frame);
     return (raytally_status)status;
 }

@@ -3,10 +3,7 @@
  * own stream of random numbers, numbered by kind and index. */
 #include "rays/rayset.h"
 
-#include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "core/base/random.h"
-#include "render/illumination.h"
 
 #include <assert.h>
 #include <string.h>

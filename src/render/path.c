@@ -2,7 +2,6 @@
 #include "render/path.h"
 
 #include "accel/plugin.h"
-#include "core/base/memory.h"
 #include "render/illumination.h"
 
 #include <stdio.h>
@@ -129,7 +128,7 @@ RtStatus rt_path_available(const RtAccel *accel, const char *spec, RtError *erro
 }
 
 RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *error) {
-    RtQuery query;
+    RT_OWNED(RtQuery, query, rt_query_clear);
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
     *path = (RtPath){
         .ray = *ray, .accel = accel, .any = rt_ray_kind_is_any_hit((RtRayKind)ray->kind), .hit = RT_MISS};
@@ -146,7 +145,6 @@ RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *
         rt_trace_observer = NULL;
         status = recorder.status;
     }
-    rt_query_clear(&query);
     if (status == RT_OK) status = rt_accel_check(accel, error);
     if (status == RT_OK) status = compare(path, &tallies[ray->kind], rt_accel_is_remote(accel), error);
     if (status == RT_OK) find_nearest(path);
@@ -220,14 +218,12 @@ static RtStatus spawn(const RtAccel *accel, RtRayKind kind, uint32_t light, RtRa
 RtStatus rt_path_ray(const RtAccel *accel, RtRayKind kind, uint32_t column, uint32_t row, uint32_t light,
                      RtRay *ray, RtError *error) {
     RtView view;
-    RtQuery query;
+    RT_OWNED(RtQuery, query, rt_query_clear);
     RtHit hit;
     RT_TRY(rt_view_init(&view, &accel->scene->camera, accel->scene->sampling, error));
     *ray = rt_view_ray(&view, column, row);
     if (kind == RT_RAY_PRIMARY) return RT_OK;
     RT_TRY(rt_query_init(&query, accel, error));
     rt_nearest(&query, ray, 1, &hit, NULL);
-    RtStatus status = spawn(accel, kind, light, ray, rt_query_crossings(&query), hit, error);
-    rt_query_clear(&query);
-    return status;
+    return spawn(accel, kind, light, ray, rt_query_crossings(&query), hit, error);
 }

@@ -5,7 +5,6 @@
 
 #include "accel/accel.h"
 #include "core/base/observe.h"
-#include "core/shape/sphere.h"
 
 /* A row of the path. An object test and its hit are one row. */
 typedef struct RtPathRow {

@@ -4,14 +4,9 @@
  * merged by a run that has nothing left to measure, once the directory has their journal. */
 #include "run/run.h"
 
-#include "core/base/file.h"
 #include "core/base/parallel.h"
 #include "core/base/words.h"
-#include "core/text/json.h"
 #include "experiment/plugins_used.h"
-#include "measure/machine.h"
-#include "render/frame.h"
-#include "results/journal.h"
 #include "results/result_directory.h"
 
 #include <inttypes.h>
@@ -70,18 +65,15 @@ static uint32_t number_of(const Merge *merge, uint32_t i, const char *key) {
 static RtStatus load_journals(Merge *merge, RtError *error) {
     for (uint32_t i = 0; i < merge->count; i++) {
         char path[RT_MAX_PATH];
-        json_t *manifest;
+        json_auto_t *manifest = NULL;
         RT_TRY(rt_path_join(merge->directories[i], RT_RUN_JOURNAL, path, error));
-        if (!rt_file_exists(path)) {
+        if (!rt_file_exists(path))
             return rt_fail(error, RT_BAD_INPUT, "%s is not the directory of a run: it has no %s",
                            merge->directories[i], RT_RUN_JOURNAL);
-        }
-        if (rt_manifest_read(merge->directories[i], &manifest, NULL) != RT_OK) {
+        if (rt_manifest_read(merge->directories[i], &manifest, NULL) != RT_OK)
             return rt_fail(error, RT_BAD_INPUT,
                            "%s is not finished: finish it with raytally run ... --resume",
                            merge->directories[i]);
-        }
-        json_decref(manifest);
         RT_TRY(rt_json_lines_load(path, &merge->journals[i], error));
         if (number_of(merge, i, "shards") > 0) continue;
         return rt_fail(error, RT_BAD_INPUT, "%s is not a shard: it was not run with --shard",
@@ -136,19 +128,16 @@ static RtStatus check_same_threads(const Merge *merge, int *threads, RtError *er
 
 /* The shards must have used the plugins that are loaded here, which the manifest will name. */
 static RtStatus check_plugins(const Merge *merge, const RtExperiment *experiment, RtError *error) {
-    RtStatus status = RT_OK;
-    for (uint32_t i = 0; i < merge->count && status == RT_OK; i++) {
-        json_t *changed =
+    for (uint32_t i = 0; i < merge->count; i++) {
+        json_auto_t *changed =
             rt_plugins_changed_since(json_object_get(header_of(merge, i), "plugins"), experiment);
         const char *name = json_object_iter_key(json_object_iter(changed));
         char sentence[RT_MAX_PLUGIN_CHANGE];
-        if (name) {
-            rt_plugins_change_format(name, json_object_get(changed, name), "there", "here", sentence);
-            status = rt_fail(error, RT_BAD_INPUT, "%s: %s: load that one", merge->directories[i], sentence);
-        }
-        json_decref(changed);
+        if (!name) continue;
+        rt_plugins_change_format(name, json_object_get(changed, name), "there", "here", sentence);
+        return rt_fail(error, RT_BAD_INPUT, "%s: %s: load that one", merge->directories[i], sentence);
     }
-    return status;
+    return RT_OK;
 }
 
 static RtStatus check_whole(const Merge *merge, RtError *error) {
@@ -278,13 +267,10 @@ static RtStatus copy_files(const Run *run, RtOutputs *copies, RtError *error) {
 
 /* Writes the copies, removes the previous results, and then renames the copies. */
 static RtStatus replace_previous(Run *run, RtError *error) {
-    RtOutputs copies = {0};
-    RtStatus status = copy_files(run, &copies, error);
-    if (status == RT_OK && !run->resumed)
-        status = rt_result_files_remove(run->options->directory, RT_RUN_JOURNAL, error);
-    if (status == RT_OK) status = rt_outputs_commit(&copies, error);
-    rt_outputs_clear(&copies);
-    return status;
+    RT_OWNED(RtOutputs, copies, rt_outputs_clear);
+    RT_TRY(copy_files(run, &copies, error));
+    if (!run->resumed) RT_TRY(rt_result_files_remove(run->options->directory, RT_RUN_JOURNAL, error));
+    return rt_outputs_commit(&copies, error);
 }
 
 static RtStatus prepare_directory(Run *run, RtError *error) {
@@ -347,18 +333,15 @@ static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
     const int threads = run->options->workload.threads;
     RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
     char path[RT_MAX_PATH];
-    RtAccel *accel;
-    RtFrame frame = {0};
+    RT_OWNED(RtAccel *, accel, rt_accel_destroy_at);
+    RT_OWNED(RtFrame, frame, rt_frame_clear);
     const RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
     RT_TRY(rt_results_image_path(run->options->directory, run->experiment, t, path, error));
     if (workload->skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
     RT_TRY(rt_scene_sample(scene, workload->width, workload->height, 2, false, error));
     RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, &accel, error));
-    RtStatus status = rt_frame_trace(&frame, accel, &options, error);
-    if (status == RT_OK) status = rt_png_write(&frame, path, error);
-    rt_frame_clear(&frame);
-    rt_accel_destroy(accel);
-    return status;
+    RT_TRY(rt_frame_trace(&frame, accel, &options, error));
+    return rt_png_write(&frame, path, error);
 }
 
 /* Frees the scene of workload `t`, unless a later workload uses it. */

@@ -189,11 +189,10 @@ typedef struct Rendering {
 
 static RtStatus render_once(void *context, RtError *error) {
     Rendering *rendering = context;
-    RtFrame frame;
+    RT_OWNED(RtFrame, frame, rt_frame_clear);
     RT_TRY(rt_frame_trace(&frame, rendering->accel, &rendering->options, error));
     if (rendering->runs > 0) rendering->shares[rendering->runs - 1] = frame.share;
     rendering->runs++;
-    rt_frame_clear(&frame);
     return RT_OK;
 }
 
@@ -310,12 +309,10 @@ RtStatus rt_workload_measure(RtResults *results, uint32_t index, const RtWorkloa
 
 RtStatus rt_workloads_run(RtResults *results, const RtWorkloadOptions *options, RtError *error) {
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
-        RtScene scene;
+        RT_OWNED(RtScene, scene, rt_scene_clear);
         if (rt_workload_is_done(results, t, options)) continue;
         RT_TRY(rt_workload_open(results, t, options, &scene, error));
-        RtStatus status = rt_workload_measure(results, t, options, &scene, error);
-        rt_scene_clear(&scene);
-        RT_TRY(status);
+        RT_TRY(rt_workload_measure(results, t, options, &scene, error));
     }
     return RT_OK;
 }

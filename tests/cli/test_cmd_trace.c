@@ -2,9 +2,6 @@
 /* raytally trace and explore, as a user runs them. */
 #include "command_testing.h"
 
-#include "core/base/file.h"
-#include "core/base/tally.h"
-
 #include <jansson.h>
 
 #define OUT RT_BINARY_DIR "/test_cmd_trace"

@@ -6,7 +6,6 @@
 #include "testing.h"
 
 #include "claims/claims.h"
-#include "core/base/memory.h"
 #include "results/result_tables.h"
 
 /* Scenes random:n=10, 100, 1000 and balls; accelerators bvh (the baseline), grid:density=1, 2, 4. */

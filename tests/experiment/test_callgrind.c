@@ -2,7 +2,6 @@
 /* bench --callgrind: instructions per ray by valgrind, in a worker that is this program. */
 #include "experiment_testing.h"
 
-#include "core/text/json.h"
 #include "measure/measure.h"
 
 #include <sys/stat.h>

@@ -2,8 +2,6 @@
 /* Runs that take long: a part of them, and what is left out. */
 #include "experiment_testing.h"
 
-#include "results/result_tables.h"
-
 static const char long_experiment[] = "name: small\nquestion: How long?\nprediction: A second.\n"
                                       "scenes:\n"
                                       "  - {scene: \"balls:size=2\", label: balls, size: 24x24}\n"

@@ -2,8 +2,6 @@
 /* raytally.h: its functions do what the program does, reject what it rejects, and leak nothing. */
 #include "library_testing.h"
 
-#include "scenes/open.h"
-
 RT_TEST(counters_and_kinds_of_rays_have_their_names) {
     assert_string_equal(raytally_counter_name(RAYTALLY_RAYS), "rays");
     assert_string_equal(raytally_counter_name(RAYTALLY_PASSED_ON), "passed_on");

@@ -2,8 +2,6 @@
 /* render/: images, read back from their files. */
 #include "render_testing.h"
 
-#include "core/base/file.h"
-
 #include <png.h>
 #include <xxhash.h>
 
