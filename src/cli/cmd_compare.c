@@ -3,12 +3,10 @@
  * directories, or two programs that run in turns. */
 #include "cli/cli.h"
 #include "cli/experiment_options.h"
-#include "cli/progress.h"
 #include "compare/compare.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/plugins_used.h"
-#include "results/result_directory.h"
 #include "run/callgrind.h"
 #include "run/worker.h"
 
@@ -87,7 +85,7 @@ static const RtOption options[] = {
 static RtStatus load(Options *o, RtError *error) {
     RtExperiment *e = &o->shared.experiment;
     char where[RT_MAX_LABEL];
-    if (e->candidate_count == 0) return rt_experiment_load(e, o->subjects[0], o->quick, error);
+    if (e->candidate_count == 0) return rt_experiment_load(e, o->subjects[0], o->quick, NULL, error);
     strcpy(e->name, "compare");
     RT_TRY(rt_experiment_add_scenes(e, &o->shared.like, o->subjects[0], "", error));
     return rt_experiment_check(e, where, error);

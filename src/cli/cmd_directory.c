@@ -3,7 +3,6 @@
  * made again. */
 #include "claims/claims.h"
 #include "cli/cli.h"
-#include "cli/progress.h"
 #include "core/base/file.h"
 #include "core/base/words.h"
 #include "report/plot.h"
@@ -24,7 +23,6 @@ RtStatus rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWo
     return work(directory, &results, options, error);
 }
 
-/* Of all three commands. */
 typedef struct Options {
     const char *directories[RT_MAX_SHARDS]; /* of `merge` the shards; else one */
     uint32_t count;

@@ -4,7 +4,6 @@
 #include "cli/experiment_options.h"
 #include "core/base/words.h"
 #include "measure/measure.h"
-#include "run/workload.h"
 
 #include <inttypes.h>
 #include <stdio.h>

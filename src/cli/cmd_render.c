@@ -202,7 +202,6 @@ static const RtOption options[] = {
 
 /* ---- the frames ---- */
 
-/* RT_BAD_INPUT if an option does not apply to the drawn layer. */
 static RtStatus check_layer(const Options *o, const RtAccel *layer, RtError *error) {
     const bool of_lights = layer->ops->find_cell && layer->ops->kinds >> RT_RAY_SHADOW & 1;
     if (o->of_boxes && layer->ops->find_cell)
@@ -225,7 +224,6 @@ typedef struct Built {
     RtFrame counted;
 } Built;
 
-/* One run of the command. */
 typedef struct Run {
     Options *options; /* accelerators that refuse the scene are removed */
     RtScene scene;
@@ -461,7 +459,6 @@ static RtStatus check_kind(const Run *run, const RtAccel *brute, const RtRaySet 
                    rt_ray_kind_name(set->kind), says);
 }
 
-/* Compares the whole frame, bit for bit. */
 static RtStatus check_frame(const Run *run, const RtAccel *brute, RtError *error) {
     const RtFrame *got = &run->timed;
     RT_OWNED(RtFrame, right, rt_frame_clear);

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally reproduce: counts a result directory again and compares its exact files byte for byte. */
 #include "cli/cli.h"
-#include "cli/plugins.h"
-#include "cli/progress.h"
 #include "core/base/memory.h"
 #include "core/base/versions.h"
-#include "results/result_directory.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -41,7 +38,6 @@ static const char *cheapest_scene(const RtResults *results) {
     return best < RT_MAX_WORKLOADS ? results->experiment->workloads[best].label : NULL;
 }
 
-/* Of one scene, or of all. */
 static RtStatus count_again(RtResults *results, const RtSelection *only, RtError *error) {
     RtWorkloadOptions options = {.timing = 1, .count_only = true, .only = *only};
     RtProgress progress;
@@ -51,13 +47,11 @@ static RtStatus count_again(RtResults *results, const RtSelection *only, RtError
     return status;
 }
 
-/* The length of a line with its '\n', if there is one. */
 static size_t line_length(const char *line) {
     size_t length = strcspn(line, "\n");
     return length + (line[length] != '\0');
 }
 
-/* A note if the line is not followed by another. */
 static const char *end_of_line(const char *line) {
     if (*line == '\0') return "(nothing more)";
     return strchr(line, '\n') ? "" : " (without an end of line)";
@@ -90,18 +84,16 @@ static bool is_left_out(Again *again, const char *row) {
     return false;
 }
 
-/* Compares line by line; RT_MISMATCH with the first line that differs. */
 static RtStatus compare(Again *again, const char *path, const char *kept, const char *counted,
                         RtError *error) {
     for (size_t line = 1; *kept || *counted; line++) {
         const size_t length = line_length(kept);
         const bool left_out = line > 1 && *kept && is_left_out(again, kept); /* line 1 names the columns */
-        if (!left_out && (length != line_length(counted) || memcmp(kept, counted, length) != 0)) {
+        if (!left_out && (length != line_length(counted) || memcmp(kept, counted, length) != 0))
             return rt_fail(error, RT_MISMATCH,
                            "%s:%zu: differs from the new counts:\n  there: %.*s%s\n  now:   %.*s%s", path,
                            line, (int)strcspn(kept, "\n"), kept, end_of_line(kept),
                            (int)strcspn(counted, "\n"), counted, end_of_line(counted));
-        }
         kept += length;
         if (left_out) continue;
         counted += length;
@@ -150,7 +142,6 @@ static RtStatus compare_all(Again *again, RtError *error) {
                    again->directory, again->missing);
 }
 
-/* Says why counts of another version may differ. */
 static void tell_version(const char *directory) {
     json_auto_t *manifest = NULL;
     if (rt_manifest_read(directory, &manifest, NULL) != RT_OK) return;

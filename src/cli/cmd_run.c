@@ -3,13 +3,9 @@
 #include "claims/claims.h"
 #include "cli/cli.h"
 #include "cli/jobs.h"
-#include "cli/plugins.h"
-#include "cli/progress.h"
 #include "core/base/words.h"
 #include "measure/result_files.h"
 #include "report/report.h"
-#include "results/journal.h"
-#include "results/result_directory.h"
 #include "results/result_tables.h"
 #include "run/run.h"
 
@@ -94,7 +90,6 @@ static const RtOption options[] = {
 
 /* ---- before ---- */
 
-/* The line of a cell in --dry-run. */
 static void print_cell(const RtResults *results, const RtCellCursor *at) {
     const RtExperiment *e = results->experiment;
     const RtWorkloadResult *workload = &results->workloads[at->workload];
@@ -125,12 +120,10 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, bool list, 
     return RT_OK;
 }
 
-/* The folder of the directories of several experiments. */
 static const char *folder_of(const Options *o) {
     return o->out ? o->out : "results";
 }
 
-/* The command that continues the run, or the runs. */
 static void go_on(const Options *o, const RtExperiment *e, char out[MOST_COMMAND]) {
     const RtWorkloadOptions *how = &o->how.workload;
     const size_t size = MOST_COMMAND;
@@ -171,12 +164,11 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     return o->strict ? rt_claims_check(results, error) : RT_OK;
 }
 
-/* Loads a YAML, or the experiment of a manifest.json. */
 static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
     const char *path = o->paths[o->current];
     char folder[RT_MAX_PATH];
     o->found = rt_ends_in(path, RT_MANIFEST);
-    if (!o->found) return rt_experiment_load(experiment, path, o->quick, error);
+    if (!o->found) return rt_experiment_load(experiment, path, o->quick, NULL, error);
     if (o->quick)
         return rt_fail(error, RT_BAD_INPUT, "--quick: %s says which variant it was; leave --quick out", path);
     rt_path_folder(path, folder);
@@ -185,7 +177,6 @@ static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
     return status;
 }
 
-/* Where the results of the experiment go. */
 static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtError *error) {
     const RtSelection *only = &o->how.workload.only;
     char name[RT_MAX_WORD + 8];

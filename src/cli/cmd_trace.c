@@ -153,7 +153,6 @@ static void print_path(const RtPath *path, const Options *o, const char *title, 
 
 enum { PAGE = 100, LEAST_HIT = 16 }; /* characters: of a line, and of the column of objects */
 
-/* A row of the tree as text. */
 enum { NUMBER, RAY, T, HIT, FACTOR, COLUMNS };
 typedef struct Row {
     char of[COLUMNS][2 * RT_MAX_DEPTH + RT_TREE_HIT_TEXT];

@@ -4,7 +4,6 @@
 #include "accel/plugin.h"
 #include "cli/cli.h"
 #include "cli/jobs.h"
-#include "cli/plugins.h"
 #include "core/base/memory.h"
 #include "core/base/versions.h"
 #include "core/base/words.h"

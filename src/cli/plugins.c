@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cli/plugins.h"
+#include "cli/cli.h"
 
 #include "accel/plugin.h"
 #include "core/base/words.h"
 #include "experiment/plugins_used.h"
-#include "results/result_directory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cli/progress.h"
+#include "cli/cli.h"
 
 #include "core/base/clock.h"
 #include "core/base/words.h"

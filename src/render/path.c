@@ -41,7 +41,6 @@ static void find_span_of_ball(const RtRay *ray, RtPathRow *row) {
     row->leave = inside < 0 ? -(double)INFINITY : fmin((double)ray->tmax, nearest + half);
 }
 
-/* Marks the row of the object test that a hit belongs to. */
 static void note_hit(RtPath *path, const RtTraced *event) {
     for (uint32_t i = path->count; i-- > 0;) {
         RtPathRow *row = &path->rows[i];
@@ -163,17 +162,13 @@ bool rt_path_row_answers(const RtPathRow *row) {
 }
 
 const char *rt_path_row_name(const RtPathRow *row) {
-    switch (row->kind) {
-    case RT_TRACED_STEP: return row->empty ? "step, empty" : row->leaf ? "step, leaf" : "step";
-    case RT_TRACED_EXTENT_TEST: return "extent test";
-    case RT_TRACED_OBJECT_TEST: return "object test";
-    case RT_TRACED_CSG_TEST: return "csg test";
-    case RT_TRACED_REPEAT_AVOIDED: return "repeat avoided";
-    case RT_TRACED_PASSED_ON: return "passed on";
-    case RT_TRACED_OBJECT_HIT:
-    case RT_TRACED_KIND_COUNT: break;
-    }
-    return "";
+    static const char *const names[RT_TRACED_KIND_COUNT] = {[RT_TRACED_EXTENT_TEST] = "extent test",
+                                                            [RT_TRACED_OBJECT_TEST] = "object test",
+                                                            [RT_TRACED_CSG_TEST] = "csg test",
+                                                            [RT_TRACED_REPEAT_AVOIDED] = "repeat avoided",
+                                                            [RT_TRACED_PASSED_ON] = "passed on"};
+    if (row->kind != RT_TRACED_STEP) return names[row->kind];
+    return row->empty ? "step, empty" : row->leaf ? "step, leaf" : "step";
 }
 
 uint32_t rt_path_run(const RtPath *path, uint32_t first) {

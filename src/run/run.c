@@ -112,13 +112,12 @@ static RtStatus check_same_threads(const Merge *merge, int *threads, RtError *er
             const json_t *timed = json_object_get(json_array_get(merge->journals[i], line), "timed");
             int here = (int)json_integer_value(json_object_get(timed, "threads"));
             if (!timed || (first < merge->count && here == *threads)) continue;
-            if (first < merge->count) {
+            if (first < merge->count)
                 return rt_fail(error, RT_BAD_INPUT,
                                "%s was timed on %d thread%s, and %s on %d: their times are not comparable. "
                                "Run one of them again with the --threads of the other, and --force",
                                merge->directories[first], *threads, rt_plural((uint64_t)*threads),
                                merge->directories[i], here);
-            }
             first = i;
             *threads = here;
         }
@@ -189,9 +188,8 @@ static RtStatus take_directory(Run *run, RtError *error) {
     RT_TRY(rt_lock_take(&run->lock, options->directory, error));
     RT_TRY(path_in(run, RT_RUN_JOURNAL, run->path, error));
     /* Loading a journal gives a better error than its existence. */
-    if (options->start != RT_START_ANEW && rt_file_exists(run->path)) {
+    if (options->start != RT_START_ANEW && rt_file_exists(run->path))
         RT_TRY(rt_journal_load(run->path, run->results, &options->workload.only, error));
-    }
     return rt_result_files_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
 }
 

@@ -133,11 +133,10 @@ static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
         now.ray_fingerprints[k] = workload->sets[k].fingerprint;
         same &= now.ray_fingerprints[k] == result->ray_fingerprints[k];
     }
-    if (result->known && !same) {
+    if (result->known && !same)
         return rt_fail(error, RT_BAD_INPUT,
                        "'%s' has changed since this run was interrupted: start over with --force",
                        workload->experiment->workloads[workload->index].label);
-    }
     if (result->known) return RT_OK;
     *result = now;
     return rt_workload_tell(workload, RT_EVENT_WORKLOAD, 0, RT_RAY_PRIMARY, error);
@@ -275,9 +274,8 @@ static RtStatus measure(RtWorkloadState *workload, RtError *error) {
     RT_TRY(prepare(workload, error));
     notify_empty(workload);
     RT_TRY(rt_workload_build(workload, error));
-    for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
+    for (uint32_t k = 0; k < workload->experiment->kind_count; k++)
         RT_TRY(measure_kind(workload, workload->experiment->kinds[k], error));
-    }
     return render(workload, error);
 }
 

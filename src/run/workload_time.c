@@ -71,9 +71,8 @@ static RtStatus timing_run_init(TimingRun *run, RtWorkloadState *workload, RtRay
         run->baseline_entry[c] = run->place[run->baselines[0]];
         if (!workload->accels[c] || rt_workload_setup(workload, c)->ray_stride == 1) continue;
         run->baseline_entry[c] = run->count;
-        for (uint32_t i = 0; i < run->baseline_count; i++) {
+        for (uint32_t i = 0; i < run->baseline_count; i++)
             enter(run, run->baselines[i], &workload->shares[c].set);
-        }
     }
     return RT_OK;
 }

@@ -195,9 +195,8 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls --pixel 0,0 --depth 2 --rays shadow", "leave out --rays"},
         {"balls --pixel 0,0 --depth 2 --light 1", "leave out --rays"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         assert_said(trace(cases[i].arguments), 2, OUT ".err", cases[i].says);
-    }
 }
 
 /* tests/check_pages.sh tests what the page does, in a browser. */

@@ -2,7 +2,7 @@
 /* What a long command says while it runs, on a terminal and where there is none. */
 #include "experiment_testing.h"
 
-#include "cli/progress.h"
+#include "cli/cli.h"
 
 #include <fcntl.h>
 #include <stdatomic.h>

@@ -72,4 +72,9 @@ static inline void expect(RtClaimVerdict verdict, const char *claim, const char 
     fail_msg("%s: %s, %s", claim, rt_claim_verdict_name(result.verdict), result.figures);
 }
 
+#define holds(claim, figures)        expect(RT_CLAIM_HOLDS, claim, figures)
+#define is_false(claim, figures)     expect(RT_CLAIM_FALSE, claim, figures)
+#define is_undecided(claim, figures) expect(RT_CLAIM_UNDECIDED, claim, figures)
+#define shows(claim, figures)        expect(RT_CLAIM_FIGURE, claim, figures)
+
 #endif

@@ -100,9 +100,8 @@ static int open_balls(void **state) {
     static const char *const specs[3] = {"brute", "grid", "ideal"};
     assert_fine(raytally_scene_open("balls:size=1", &balls.scene, error));
     assert_fine(raytally_scene_set_sampling(balls.scene, 16, 16, 1, error));
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         assert_fine(raytally_accelerator_build(balls.scene, specs[i], 1, &balls.accels[i], error));
-    }
     assert_fine(raytally_rays_record(balls.accels[0], RAYTALLY_PRIMARY, NULL, &balls.rays, error));
     *state = &balls;
     return 0;
