@@ -105,6 +105,12 @@ static inline char *read_in(const Place *place, const char *name) {
     return text;
 }
 
+static inline int count_of(const char *text, const char *part) {
+    int count = 0;
+    for (; (text = strstr(text, part)) != NULL; text += strlen(part)) count++;
+    return count;
+}
+
 /* All of one or more parts. */
 #define assert_in_file(place, name, ...)                                                                     \
     assert_parts_in_file(place, name, (const char *const[]){__VA_ARGS__, NULL})

@@ -248,15 +248,12 @@ static RtStatus bench(Options *o, RtError *error) {
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
     if (o->worker) return rt_worker_serve(experiment, NULL, error);
-    RtResults results;
-    RtCallgrind callgrind = {0};
-    RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK) status = measure(o, &results, &callgrind, error);
-    if (status == RT_OK) status = report(o, &results, &callgrind, error);
-    if (status == RT_OK) status = rt_results_check(&results, error);
-    rt_callgrind_clear(&callgrind);
-    rt_results_clear(&results);
-    return status;
+    RT_OWNED(RtResults, results, rt_results_clear);
+    RT_OWNED(RtCallgrind, callgrind, rt_callgrind_clear);
+    RT_TRY(rt_results_init(&results, experiment, error));
+    RT_TRY(measure(o, &results, &callgrind, error));
+    RT_TRY(report(o, &results, &callgrind, error));
+    return rt_results_check(&results, error);
 }
 
 const RtSyntax rt_bench_syntax = {

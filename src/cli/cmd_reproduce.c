@@ -182,13 +182,12 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
                    .results = results,
                    .only = {.parts[0].scene = scene, .part_count = 1},
                    .scene = scene};
-    if (status == RT_OK) status = rt_selection_check(&again.only, &original, error);
-    if (status == RT_OK) status = rt_results_init(results, &original, error);
-    if (status == RT_OK) status = count_again(results, &again.only, error);
-    if (status == RT_OK) status = check_scenes(&again, then, error);
-    if (status == RT_OK) status = compare_all(&again, error);
-    rt_results_clear(results);
-    return status;
+    RT_TRY(status);
+    RT_TRY(rt_selection_check(&again.only, &original, error));
+    RT_TRY(rt_results_init(results, &original, error));
+    RT_TRY(count_again(results, &again.only, error));
+    RT_TRY(check_scenes(&again, then, error));
+    return compare_all(&again, error);
 }
 
 static const RtOption options[] = {

@@ -172,7 +172,6 @@ static void label_files(RtExperiment *experiment, uint32_t i) {
     }
 }
 
-/* Sets what is shown of all scenes and accelerators. */
 static void shorten_labels(RtExperiment *experiment) {
     const char *labels[RT_MAX_CANDIDATES];
     const uint32_t count = experiment->candidate_count;

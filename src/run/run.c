@@ -12,7 +12,6 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* All that the experiment has. */
 static RtStatus write_csvs(const RtResults *results, const char *directory, RtError *error) {
     for (RtResultFile file = 0; file < RT_RESULT_FILE_COUNT; file++) {
         const RtFileSort sort = rt_result_file_sort(results->experiment, file);
@@ -325,7 +324,6 @@ static void on_notice(void *context, const char *message) {
     rt_notify(&run->options->workload.observer, "%s", message);
 }
 
-/* The picture of a workload's scene, unless it exists. */
 static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
     const RtWorkloadResult *workload = &run->results->workloads[t];
     const int threads = run->options->workload.threads;
@@ -351,7 +349,6 @@ static void close_scene(Run *run, uint32_t t) {
     rt_scene_clear(&run->scenes[slot]);
 }
 
-/* Says what was done if nothing was measured. */
 static void tell_end(const Run *run) {
     const RtRunObserver *observer = &run->options->workload.observer;
     uint32_t scenes, shards = run->merge ? run->merge->count : 0;

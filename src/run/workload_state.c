@@ -97,7 +97,6 @@ static RtStatus distribute_leaves(const RtAccel *accel, RtBuildResult *result, R
 
 /* ---- builds ---- */
 
-/* The builds of one candidate. */
 typedef struct Builds {
     RtWorkloadState *workload;
     uint32_t candidate;

@@ -109,9 +109,7 @@ PLACE_TEST(run_and_bench_thin_a_set_to_the_same_rays) {
 
 static int occurrences(const Place *place, const char *name, const char *what) {
     OWNED_MEMORY char *text = read_in(place, name);
-    int count = 0;
-    for (const char *at = text; (at = strstr(at, what)); at++) count++;
-    return count;
+    return count_of(text, what);
 }
 
 PLACE_TEST(a_few_rays_that_are_repeated_until_they_are_learnt_cause_a_warning) {

@@ -88,13 +88,11 @@ RT_TEST(the_camera_changes_only_while_no_accelerator_stands_over_the_scene) {
 
 /* ---- one scene for what follows ---- */
 
-typedef struct Balls {
+static struct {
     raytally_scene *scene;
     raytally_accelerator *accels[3]; /* brute, grid, ideal */
     raytally_rays *rays;             /* primary, of 16 x 16 samples */
-} Balls;
-
-static Balls balls;
+} balls;
 
 static int open_balls(void **state) {
     static const char *const specs[3] = {"brute", "grid", "ideal"};
