@@ -323,6 +323,11 @@ RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, R
 RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error);
 void rt_accel_destroy(RtAccel *accel); /* and the layers below; NULL is allowed */
 
+/* For RT_OWNED(RtAccel *, ...). */
+static inline void rt_accel_destroy_at(RtAccel **accel) {
+    rt_accel_destroy(*accel);
+}
+
 /* Whether a build that ended with `status` refuses the scene: for a limit of its own, or of memory. Only the
  * accelerator's own results are lost. */
 bool rt_accel_refuses(RtStatus status);

@@ -81,7 +81,7 @@ static inline void write_changed(const Place *place, const char *name, const cha
 
 /* small.yaml, to the place's experiment. */
 static inline RtStatus load_small(const Place *place, bool quick, RtError *error) {
-    return rt_experiment_load(place->experiment, path_in(place, "small.yaml").text, quick, error);
+    return rt_experiment_load(place->experiment, path_in(place, "small.yaml").text, quick, NULL, error);
 }
 
 /* Runs small.yaml into a directory of the place, timed on one thread, and counted on one by default. */
@@ -105,9 +105,20 @@ static inline char *read_in(const Place *place, const char *name) {
     return text;
 }
 
-static inline void assert_in_file(const Place *place, const char *name, const char *part) {
+static inline int count_of(const char *text, const char *part) {
+    int count = 0;
+    for (; (text = strstr(text, part)) != NULL; text += strlen(part)) count++;
+    return count;
+}
+
+/* All of one or more parts. */
+#define assert_in_file(place, name, ...)                                                                     \
+    assert_parts_in_file(place, name, (const char *const[]){__VA_ARGS__, NULL})
+
+static inline void assert_parts_in_file(const Place *place, const char *name, const char *const *parts) {
     OWNED_MEMORY char *text = read_in(place, name);
-    if (!strstr(text, part)) fail_msg("%s has no '%s':\n%s", name, part, text);
+    for (; *parts; parts++)
+        if (!strstr(text, *parts)) fail_msg("%s has no '%s':\n%s", name, *parts, text);
 }
 
 static inline void assert_not_in_file(const Place *place, const char *name, const char *part) {

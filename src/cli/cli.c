@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
 
-#include "accel/accel.h"
 #include "cli/jobs.h"
-#include "cli/plugins.h"
-#include "core/base/memory.h"
-#include "core/text/json.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -38,10 +34,9 @@ int64_t rt_cli_integer(struct argp_state *state, const char *option, const char 
     char *end;
     errno = 0;
     long long value = strtoll(text, &end, 10);
-    if (end == text || *end || errno || value < lo || value > hi) {
+    if (end == text || *end || errno || value < lo || value > hi)
         argp_error(state, "%s: invalid value '%s': expected a whole number %lld..%lld", option, text,
                    (long long)lo, (long long)hi);
-    }
     return value;
 }
 
@@ -210,7 +205,6 @@ static int key_of(const RtOption *list, int i) {
     return !list[i].name ? 0 : list[i].letter ? list[i].letter : FIRST_KEY + i;
 }
 
-/* The parser of one table. */
 static error_t take_key(int key, char *text, struct argp_state *state) {
     const Parse *parse = state->input;
     for (int i = 0; is_option(parse->list, i); i++) {

@@ -7,16 +7,10 @@
 #ifndef RT_CLI_CLI_H
 #define RT_CLI_CLI_H
 
-#include "core/base/ray.h"
-#include "core/base/status.h"
-#include "core/scene/camera.h"
 #include "results/result_directory.h"
+#include "run/workload.h"
 
 #include <argp.h>
-#include <jansson.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 enum { RT_EXIT_OK = 0, RT_EXIT_CHECK_FAILED = 1, RT_EXIT_BAD_INPUT = 2 };
 
@@ -255,5 +249,56 @@ typedef RtStatus RtDirectoryWork(const char *directory, RtResults *results, cons
 /* Loads the directory and works on it. A command that writes into the directory locks it. */
 RtStatus rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work, const void *options,
                                RtError *error);
+
+/* ---- plugins: --plugin FILE, and $RAYTALLY_PLUGINS ---- */
+
+/* The child parser of commands that take accelerators. */
+extern const struct argp rt_plugin_argp;
+
+/* Loads the plugins that the environment and these arguments name, before the arguments are parsed, since
+ * they may name accelerators of plugins. */
+RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error);
+
+/* Appends " --plugin 'FILE'" for each given plugin to out[0..size), for commands shown to the user. */
+void rt_cli_plugin_arguments(char *out, size_t size);
+
+/* Says on stderr which accelerators of the experiment come from other plugins than in the manifest of
+ * `directory`, or from none. */
+void rt_cli_tell_plugins(const char *directory, const RtExperiment *experiment);
+
+/* ---- progress on stderr, whenever something is finished: one line, redrawn in place, on a terminal; else at
+ * most one per minute ---- */
+
+/* The cells that are to be measured, and of them the finished ones. */
+typedef struct RtCellCount {
+    uint32_t cells, finished;
+} RtCellCount;
+
+/* Ignores kinds of rays that a recorded scene does not have, and cells that are left out. */
+RtCellCount rt_count_cells(const RtResults *results, const RtWorkloadOptions *options);
+
+typedef struct RtProgress {
+    bool terminal, begun;
+    RtWorkloadOptions options; /* the measurement */
+    double start, shown;       /* wall seconds: at the start, and of the last line */
+    double every;              /* seconds between lines, without a terminal */
+    RtCellCount count;
+    uint32_t before;               /* cells that were finished at the start */
+    char title[RT_MAX_LABEL + 32]; /* before what is shown: which of several runs this is; or "" */
+    char doing[2 * RT_MAX_LABEL + 64];
+} RtProgress;
+
+/* Becomes the observer of the measurement with these options. */
+void rt_progress_begin(RtProgress *progress, RtWorkloadOptions *options);
+
+/* Clears the line, if stderr is a terminal. */
+void rt_progress_clear(void);
+
+/* Prints a message on a line of its own. `context` is not used. */
+void rt_progress_notice(void *context, const char *message);
+
+/* "3 h 20 min", "5 min", "40 s"; room for RT_MAX_DURATION. */
+#define RT_MAX_DURATION 32
+void rt_format_duration(double seconds, char out[RT_MAX_DURATION]);
 
 #endif

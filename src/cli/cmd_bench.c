@@ -3,7 +3,6 @@
  * directory. */
 #include "cli/cli.h"
 #include "cli/experiment_options.h"
-#include "cli/progress.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "measure/machine.h"
@@ -40,7 +39,6 @@ static void set_baseline(RtExperiment *experiment, const char *text, struct argp
     }
 }
 
-/* All files need different names. */
 static void check_names(const Options *o, struct argp_state *state) {
     const RtExperiment *e = &o->shared.experiment;
     const char *const files[] = {o->workload.hits, o->workload.counts, o->csv,
@@ -131,7 +129,6 @@ static const RtOption options[] = {
 
 /* ---- the report ---- */
 
-/* Appends the rows of one scene. */
 static void extend(json_t *array, const RtResults *results, RtResultTable which, uint32_t workload) {
     RtResultRow row = {.results = results, .workload = workload};
     RtTable table = rt_result_table(which, &row);
@@ -139,7 +136,6 @@ static void extend(json_t *array, const RtResults *results, RtResultTable which,
     json_array_extend(array, rows);
 }
 
-/* One scene, and what was recorded of it. */
 static json_t *scene_json(const RtResults *results, uint32_t workload) {
     const RtExperiment *e = results->experiment;
     const RtWorkload *setup = &e->workloads[workload];
@@ -217,7 +213,6 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
 
 /* ---- the command ---- */
 
-/* Fails early if no file can be written there. */
 static RtStatus check_path(const char *path, RtError *error) {
     RtOutput output;
     if (!path) return RT_OK;
@@ -226,7 +221,6 @@ static RtStatus check_path(const char *path, RtError *error) {
     return RT_OK;
 }
 
-/* All but the report. */
 static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, RtError *error) {
     RT_TRY(check_path(o->workload.hits, error));
     RT_TRY(check_path(o->workload.counts, error));
@@ -241,7 +235,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     RtStatus status = rt_workloads_run(results, &o->workload, error);
     if (status == RT_OK && o->shared.callgrind)
         rt_notify(&o->workload.observer, "counting instructions under valgrind, which takes a while");
-    rt_progress_end(&progress);
+    rt_progress_clear();
     if (status == RT_OK && o->shared.callgrind)
         status = rt_callgrind_run(callgrind, NULL, results, o->argv + 1, error);
     return status;
@@ -254,15 +248,12 @@ static RtStatus bench(Options *o, RtError *error) {
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
     if (o->worker) return rt_worker_serve(experiment, NULL, error);
-    RtResults results;
-    RtCallgrind callgrind = {0};
-    RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK) status = measure(o, &results, &callgrind, error);
-    if (status == RT_OK) status = report(o, &results, &callgrind, error);
-    if (status == RT_OK) status = rt_results_check(&results, error);
-    rt_callgrind_clear(&callgrind);
-    rt_results_clear(&results);
-    return status;
+    RT_OWNED(RtResults, results, rt_results_clear);
+    RT_OWNED(RtCallgrind, callgrind, rt_callgrind_clear);
+    RT_TRY(rt_results_init(&results, experiment, error));
+    RT_TRY(measure(o, &results, &callgrind, error));
+    RT_TRY(report(o, &results, &callgrind, error));
+    return rt_results_check(&results, error);
 }
 
 const RtSyntax rt_bench_syntax = {

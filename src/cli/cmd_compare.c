@@ -3,12 +3,10 @@
  * directories, or two programs that run in turns. */
 #include "cli/cli.h"
 #include "cli/experiment_options.h"
-#include "cli/progress.h"
 #include "compare/compare.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/plugins_used.h"
-#include "results/result_directory.h"
 #include "run/callgrind.h"
 #include "run/worker.h"
 
@@ -87,7 +85,7 @@ static const RtOption options[] = {
 static RtStatus load(Options *o, RtError *error) {
     RtExperiment *e = &o->shared.experiment;
     char where[RT_MAX_LABEL];
-    if (e->candidate_count == 0) return rt_experiment_load(e, o->subjects[0], o->quick, error);
+    if (e->candidate_count == 0) return rt_experiment_load(e, o->subjects[0], o->quick, NULL, error);
     strcpy(e->name, "compare");
     RT_TRY(rt_experiment_add_scenes(e, &o->shared.like, o->subjects[0], "", error));
     return rt_experiment_check(e, where, error);
@@ -218,20 +216,19 @@ static RtStatus compare_directories(const Options *o, RtComparison *comparison, 
 /* ---- the command ---- */
 
 static RtStatus compare(Options *o, char **argv, RtError *error) {
-    RtComparison comparison = {.margin = o->margin >= 0 ? o->margin : o->with ? 0 : MARGIN_OF_DIRECTORIES};
-    RtStatus status = o->shared.callgrind ? rt_callgrind_check(error) : RT_OK;
-    if (status == RT_OK)
-        status = o->with ? compare_programs(o, argv, &comparison, error)
-                         : compare_directories(o, &comparison, error);
-    if (status == RT_OK && o->shared.callgrind) status = compare_instructions(o, argv, &comparison, error);
-    if (status == RT_OK && o->json) rt_cli_print_json(rt_comparison_json(&comparison));
-    if (status == RT_OK && !o->json) rt_comparison_print(&comparison, stdout);
-    if (status == RT_OK && o->strict && rt_comparison_count(&comparison, RT_CHANGE_SLOWER) > 0) {
-        *error = (RtError){RT_MISMATCH, ""};
-        status = RT_MISMATCH;
-    }
-    rt_comparison_clear(&comparison);
-    return status;
+    RT_OWNED(RtComparison, comparison, rt_comparison_clear);
+    comparison.margin = o->margin >= 0 ? o->margin : o->with ? 0 : MARGIN_OF_DIRECTORIES;
+    if (o->shared.callgrind) RT_TRY(rt_callgrind_check(error));
+    RT_TRY(o->with ? compare_programs(o, argv, &comparison, error)
+                   : compare_directories(o, &comparison, error));
+    if (o->shared.callgrind) RT_TRY(compare_instructions(o, argv, &comparison, error));
+    if (o->json)
+        rt_cli_print_json(rt_comparison_json(&comparison));
+    else
+        rt_comparison_print(&comparison, stdout);
+    if (!o->strict || rt_comparison_count(&comparison, RT_CHANGE_SLOWER) == 0) return RT_OK;
+    *error = (RtError){RT_MISMATCH, ""};
+    return RT_MISMATCH;
 }
 
 const RtSyntax rt_compare_syntax = {

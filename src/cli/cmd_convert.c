@@ -34,10 +34,8 @@ const RtSyntax rt_convert_syntax = {.options = options,
 
 RtStatus rt_command_convert(int argc, char **argv, RtError *error) {
     Options o = {0};
-    RtScene scene;
+    RT_OWNED(RtScene, scene, rt_scene_clear);
     rt_cli_parse(&rt_convert_syntax, argc, argv, &o);
     RT_TRY(rt_scene_open(o.in, &scene, error));
-    RtStatus status = rt_scene_save(&scene, o.out, o.force, error);
-    rt_scene_clear(&scene);
-    return status;
+    return rt_scene_save(&scene, o.out, o.force, error);
 }

@@ -3,7 +3,6 @@
  * made again. */
 #include "claims/claims.h"
 #include "cli/cli.h"
-#include "cli/progress.h"
 #include "core/base/file.h"
 #include "core/base/words.h"
 #include "report/plot.h"
@@ -16,18 +15,14 @@
 
 RtStatus rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work, const void *options,
                                RtError *error) {
-    RtLock lock = RT_NO_LOCK;
-    RtResults results = {0};
+    __attribute__((cleanup(rt_lock_release))) RtLock lock = RT_NO_LOCK;
+    RT_OWNED(RtResults, results, rt_results_clear);
     static RtExperiment experiment;
-    RtStatus status = writes ? rt_lock_take(&lock, directory, error) : RT_OK;
-    if (status == RT_OK) status = rt_results_load(directory, &experiment, &results, error);
-    if (status == RT_OK) status = work(directory, &results, options, error);
-    rt_lock_release(&lock);
-    rt_results_clear(&results);
-    return status;
+    if (writes) RT_TRY(rt_lock_take(&lock, directory, error));
+    RT_TRY(rt_results_load(directory, &experiment, &results, error));
+    return work(directory, &results, options, error);
 }
 
-/* Of all three commands. */
 typedef struct Options {
     const char *directories[RT_MAX_SHARDS]; /* of `merge` the shards; else one */
     uint32_t count;
@@ -70,15 +65,12 @@ const RtSyntax rt_merge_syntax = {
 RtStatus rt_command_merge(int argc, char **argv, RtError *error) {
     Options o = {.how = {.report = rt_run_report, .workload.observer.notice = rt_progress_notice}};
     rt_cli_parse(&rt_merge_syntax, argc, argv, &o);
-    RtResults results = {0};
+    RT_OWNED(RtResults, results, rt_results_clear);
     static RtExperiment experiment;
-    RtStatus status = rt_merge(o.directories, o.count, &o.how, &experiment, &results, error);
-    if (status == RT_OK) {
-        rt_print_summary(&results, stdout);
-        printf("\nReport: %s/report.html\n", o.how.directory);
-    }
-    rt_results_clear(&results);
-    return status;
+    RT_TRY(rt_merge(o.directories, o.count, &o.how, &experiment, &results, error));
+    rt_print_summary(&results, stdout);
+    printf("\nReport: %s/report.html\n", o.how.directory);
+    return RT_OK;
 }
 
 /* ---- plot ---- */

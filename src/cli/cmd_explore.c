@@ -57,7 +57,7 @@ static RtStatus run(Options *o, RtError *error) {
     RtAccel *accels[RT_MAX_EXPLORED] = {NULL};
     RtExploredSpec specs[RT_MAX_EXPLORED];
     char texts[RT_MAX_EXPLORED][RT_MAX_SPEC_CHARS];
-    RtScene scene;
+    RT_OWNED(RtScene, scene, rt_scene_clear);
     uint32_t stride;
     RT_TRY(rt_explore_available(error));
     RT_TRY(rt_cli_check_json_name(o->scene, error));
@@ -71,7 +71,6 @@ static RtStatus run(Options *o, RtError *error) {
     if (status == RT_OK && stride > 1)
         printf("wrote %s, with the rays of one pixel in %u x %u\n", o->page, stride, stride);
     for (uint32_t i = 0; i < o->accel_count; i++) rt_accel_destroy(accels[i]);
-    rt_scene_clear(&scene);
     return status;
 }
 

@@ -15,7 +15,6 @@ typedef struct Options {
     uint64_t rays, seed;
 } Options;
 
-/* The counts of both outputs. */
 typedef struct Counts {
     uint32_t of_shape[RT_SHAPE_COUNT];
     uint32_t zero_area; /* triangles */
@@ -47,9 +46,8 @@ static Counts count(const RtScene *scene) {
                          RT_SHAPES(COUNT)
 #undef COUNT
                      }};
-    for (uint32_t i = 0; i < g->triangle_count; i++) {
+    for (uint32_t i = 0; i < g->triangle_count; i++)
         counts.zero_area += rt_lengthd(rt_triangle_normal(&g->triangles[i])) == 0;
-    }
     snprintf(counts.fingerprint, sizeof counts.fingerprint, "%016" PRIx64, rt_scene_fingerprint(scene));
     return counts;
 }
@@ -116,12 +114,10 @@ static json_t *material_json(const RtMaterial *m) {
 static json_t *info_json(const RtScene *scene, const Counts *counts) {
     const RtGeometry *g = &scene->geometry;
     json_t *shapes = json_object(), *materials = json_array(), *lights = json_array();
-    for (int i = 0; i < RT_SHAPE_COUNT; i++) {
+    for (int i = 0; i < RT_SHAPE_COUNT; i++)
         json_object_set_new(shapes, rt_shape_name((RtShape)i), json_integer(counts->of_shape[i]));
-    }
-    for (uint32_t i = 0; i < scene->material_count; i++) {
+    for (uint32_t i = 0; i < scene->material_count; i++)
         json_array_append_new(materials, material_json(&scene->materials[i]));
-    }
     for (uint32_t i = 0; i < scene->light_count; i++) {
         const RtLight *light = &scene->lights[i];
         json_array_append_new(lights, json_pack("{s:o, s:o}", "position", rt_cli_vector_json(light->position),
@@ -147,21 +143,6 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
 
 /* ---- the command ---- */
 
-static RtStatus show(const RtScene *scene, const Options *o, RtError *error) {
-    Counts counts = count(scene);
-    RtExtentsTable table;
-    if (o->extents) RT_TRY(rt_extents_table(&table, scene, o->every_slabs, o->rays, o->seed, error));
-    if (o->json) {
-        json_t *info = info_json(scene, &counts);
-        if (o->extents) json_object_set_new(info, "extents", rt_extents_table_json(&table));
-        rt_cli_print_json(info);
-    } else {
-        print_info(scene, &counts);
-        if (o->extents) rt_extents_table_print(&table, stdout);
-    }
-    return RT_OK;
-}
-
 const RtSyntax rt_info_syntax = {.options = options,
                                  RT_ONE_SCENE,
                                  .help =
@@ -171,11 +152,20 @@ const RtSyntax rt_info_syntax = {.options = options,
 
 RtStatus rt_command_info(int argc, char **argv, RtError *error) {
     Options o = {.rays = 100000, .seed = 1};
-    RtScene scene;
+    RT_OWNED(RtScene, scene, rt_scene_clear);
+    RtExtentsTable table;
     rt_cli_parse(&rt_info_syntax, argc, argv, &o);
     if (o.json) RT_TRY(rt_cli_check_json_name(o.scene, error));
     RT_TRY(rt_scene_open(o.scene, &scene, error));
-    RtStatus status = show(&scene, &o, error);
-    rt_scene_clear(&scene);
-    return status;
+    const Counts counts = count(&scene);
+    if (o.extents) RT_TRY(rt_extents_table(&table, &scene, o.every_slabs, o.rays, o.seed, error));
+    if (o.json) {
+        json_t *info = info_json(&scene, &counts);
+        if (o.extents) json_object_set_new(info, "extents", rt_extents_table_json(&table));
+        rt_cli_print_json(info);
+    } else {
+        print_info(&scene, &counts);
+        if (o.extents) rt_extents_table_print(&table, stdout);
+    }
+    return RT_OK;
 }

@@ -13,7 +13,6 @@ typedef struct Options {
 
 static const RtOption options[] = {{"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"}, {0}};
 
-/* Two lines per parameter. */
 static void print_params(const RtParam *table, size_t count) {
     for (size_t i = 0; i < count; i++) {
         char range[RT_MAX_SPEC_CHARS];
@@ -98,11 +97,10 @@ RtStatus rt_command_accels(int argc, char **argv, RtError *error) {
     for (size_t i = 0; i < rt_accel_count(); i++) {
         const RtAccelOps *ops = rt_accel_at(i);
         if (only && ops != only) continue;
-        if (o.json) {
+        if (o.json)
             json_array_append_new(list, accelerator_json(ops));
-        } else {
+        else
             print_accelerator(ops);
-        }
     }
     return finish(
         &o, "accelerators", list,
@@ -111,17 +109,6 @@ RtStatus rt_command_accels(int argc, char **argv, RtError *error) {
 }
 
 /* ---- scenes ---- */
-
-static void print_scene(const RtBuiltin *builtin) {
-    printf("%s: %s\n  %s\n", builtin->name, builtin->summary, builtin->source);
-    print_params(builtin->params, builtin->param_count);
-    putchar('\n');
-}
-
-static json_t *scene_json(const RtBuiltin *builtin) {
-    return json_pack("{s:s, s:s, s:s, s:o}", "name", builtin->name, "summary", builtin->summary, "source",
-                     builtin->source, "params", params_json(builtin->params, builtin->param_count));
-}
 
 const RtSyntax rt_scenes_syntax = {.options = options,
                                    .arguments = "[NAME]",
@@ -136,12 +123,17 @@ RtStatus rt_command_scenes(int argc, char **argv, RtError *error) {
     if (o.name) RT_TRY(rt_builtin_named(o.name, &only, error));
     json_t *list = json_array();
     for (size_t i = 0; i < rt_builtin_count(); i++) {
-        if (only && rt_builtin_at(i) != only) continue;
+        const RtBuiltin *b = rt_builtin_at(i);
+        if (only && b != only) continue;
         if (o.json) {
-            json_array_append_new(list, scene_json(rt_builtin_at(i)));
-        } else {
-            print_scene(rt_builtin_at(i));
+            json_t *params = params_json(b->params, b->param_count);
+            json_array_append_new(list, json_pack("{s:s, s:s, s:s, s:o}", "name", b->name, "summary",
+                                                  b->summary, "source", b->source, "params", params));
+            continue;
         }
+        printf("%s: %s\n  %s\n", b->name, b->summary, b->source);
+        print_params(b->params, b->param_count);
+        putchar('\n');
     }
     return finish(&o, "scenes", list,
                   "A built-in scene is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in balls:size=5.");

@@ -4,7 +4,6 @@
 #include "cli/experiment_options.h"
 #include "core/base/words.h"
 #include "measure/measure.h"
-#include "run/workload.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -38,8 +37,8 @@ static RtStatus save(const Options *o, const RtRaySet *set, RtError *error) {
 
 static RtStatus record(Options *o, RtError *error) {
     RtExperiment *e = &o->shared.experiment;
-    RtScene scene;
-    RtAccel *reference = NULL;
+    RT_OWNED(RtScene, scene, rt_scene_clear);
+    RT_OWNED(RtAccel *, reference, rt_accel_destroy_at);
     RtRaySet sets[RT_RAY_KIND_COUNT] = {0};
     uint64_t whole_rays[RT_RAY_KIND_COUNT];
     RT_TRY(rt_experiment_add_scenes(e, &o->shared.like, o->scene, "", error));
@@ -50,8 +49,6 @@ static RtStatus record(Options *o, RtError *error) {
     RtStatus status = rt_workload_record(e, 0, o->threads, &scene, &reference, sets, whole_rays, error);
     if (status == RT_OK) status = save(o, &sets[e->kinds[0]], error);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);
-    rt_accel_destroy(reference);
-    rt_scene_clear(&scene);
     return status;
 }
 

@@ -202,7 +202,6 @@ static const RtOption options[] = {
 
 /* ---- the frames ---- */
 
-/* RT_BAD_INPUT if an option does not apply to the drawn layer. */
 static RtStatus check_layer(const Options *o, const RtAccel *layer, RtError *error) {
     const bool of_lights = layer->ops->find_cell && layer->ops->kinds >> RT_RAY_SHADOW & 1;
     if (o->of_boxes && layer->ops->find_cell)
@@ -225,7 +224,6 @@ typedef struct Built {
     RtFrame counted;
 } Built;
 
-/* One run of the command. */
 typedef struct Run {
     Options *options; /* accelerators that refuse the scene are removed */
     RtScene scene;
@@ -273,11 +271,9 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     if (alone && run->layer->ops->find_cell) return RT_OK; /* cells are drawn without an image */
     run->by_default = alone && run->accel->exact;
     if (run->by_default) { /* the same image bit for bit */
-        RtAccel *quick;
+        RT_OWNED(RtAccel *, quick, rt_accel_destroy_at);
         RT_TRY(rt_accel_open_on(rt_accel_default(), &run->scene, f->threads, &quick, error));
-        RtStatus status = rt_frame_trace(&run->timed, quick, f, error);
-        rt_accel_destroy(quick);
-        return status;
+        return rt_frame_trace(&run->timed, quick, f, error);
     }
     RT_TRY(rt_frame_trace(&run->timed, run->accel, f, error));
     if (!o->stats && !o->heatmap_count) return RT_OK;
@@ -447,13 +443,11 @@ static void print_summary(const Run *run) {
 /* ---- the check ---- */
 
 static RtStatus check_kind(const Run *run, const RtAccel *brute, const RtRaySet *set, RtError *error) {
-    RtReference reference;
+    RT_OWNED(RtReference, reference, rt_reference_clear);
     RtEquivalence result;
     int threads = run->options->threads;
     RT_TRY(rt_reference_init(&reference, brute, set->rays, (size_t)set->count, threads, error));
-    RtStatus status = rt_equivalence_check(&reference, run->accel, threads, &result, error);
-    rt_reference_clear(&reference);
-    if (status != RT_OK) return status;
+    RT_TRY(rt_equivalence_check(&reference, run->accel, threads, &result, error));
     if (!result.any_wrong && result.occluded_wrong == 0) {
         printf("%s: the hits of all %llu %s rays equal brute's.\n", run->built[0].spec,
                (unsigned long long)set->count, rt_ray_kind_name(set->kind));
@@ -465,10 +459,9 @@ static RtStatus check_kind(const Run *run, const RtAccel *brute, const RtRaySet 
                    rt_ray_kind_name(set->kind), says);
 }
 
-/* Compares the whole frame, bit for bit. */
 static RtStatus check_frame(const Run *run, const RtAccel *brute, RtError *error) {
     const RtFrame *got = &run->timed;
-    RtFrame right;
+    RT_OWNED(RtFrame, right, rt_frame_clear);
     RtFrameOptions plain = {.depth = run->options->depth, .threads = run->options->threads};
     if (!run->accel->exact) return RT_OK;
     RT_TRY(rt_frame_trace(&right, brute, &plain, error));
@@ -478,12 +471,10 @@ static RtStatus check_frame(const Run *run, const RtAccel *brute, RtError *error
            memcmp(&got->color[i], &right.color[i], sizeof *got->color) == 0) {
         i++;
     }
-    rt_frame_clear(&right);
-    if (i < samples) {
+    if (i < samples)
         return rt_fail(error, RT_MISMATCH,
                        "%s: the frame differs from brute's in column %zu, row %zu of samples",
                        run->built[0].spec, i % got->sampling.columns, i / got->sampling.columns);
-    }
     printf("%s: the frame equals brute's, bit for bit.\n", run->built[0].spec);
     return RT_OK;
 }
@@ -491,7 +482,7 @@ static RtStatus check_frame(const Run *run, const RtAccel *brute, RtError *error
 static RtStatus check_rays(const Run *run, RtError *error) {
     RtRaySet sets[RT_RAY_KIND_COUNT] = {0};
     RtRecording recording = {.depth = run->options->depth, .threads = run->options->threads};
-    RtAccel *brute;
+    RT_OWNED(RtAccel *, brute, rt_accel_destroy_at);
     RT_TRY(rt_accel_open(rt_accel_truth(), &run->scene, &brute, error));
     RtStatus status = rt_rayset_record(sets, run->accel, &recording, error);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT && status == RT_OK; kind++) {
@@ -499,7 +490,6 @@ static RtStatus check_rays(const Run *run, RtError *error) {
     }
     if (status == RT_OK) status = check_frame(run, brute, error);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
-    rt_accel_destroy(brute);
     return status;
 }
 

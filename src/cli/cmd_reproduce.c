@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally reproduce: counts a result directory again and compares its exact files byte for byte. */
 #include "cli/cli.h"
-#include "cli/plugins.h"
-#include "cli/progress.h"
 #include "core/base/memory.h"
 #include "core/base/versions.h"
-#include "results/result_directory.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -41,23 +38,20 @@ static const char *cheapest_scene(const RtResults *results) {
     return best < RT_MAX_WORKLOADS ? results->experiment->workloads[best].label : NULL;
 }
 
-/* Of one scene, or of all. */
 static RtStatus count_again(RtResults *results, const RtSelection *only, RtError *error) {
     RtWorkloadOptions options = {.timing = 1, .count_only = true, .only = *only};
     RtProgress progress;
     rt_progress_begin(&progress, &options);
     RtStatus status = rt_workloads_run(results, &options, error);
-    rt_progress_end(&progress);
+    rt_progress_clear();
     return status;
 }
 
-/* The length of a line with its '\n', if there is one. */
 static size_t line_length(const char *line) {
     size_t length = strcspn(line, "\n");
     return length + (line[length] != '\0');
 }
 
-/* A note if the line is not followed by another. */
 static const char *end_of_line(const char *line) {
     if (*line == '\0') return "(nothing more)";
     return strchr(line, '\n') ? "" : " (without an end of line)";
@@ -90,18 +84,16 @@ static bool is_left_out(Again *again, const char *row) {
     return false;
 }
 
-/* Compares line by line; RT_MISMATCH with the first line that differs. */
 static RtStatus compare(Again *again, const char *path, const char *kept, const char *counted,
                         RtError *error) {
     for (size_t line = 1; *kept || *counted; line++) {
         const size_t length = line_length(kept);
         const bool left_out = line > 1 && *kept && is_left_out(again, kept); /* line 1 names the columns */
-        if (!left_out && (length != line_length(counted) || memcmp(kept, counted, length) != 0)) {
+        if (!left_out && (length != line_length(counted) || memcmp(kept, counted, length) != 0))
             return rt_fail(error, RT_MISMATCH,
                            "%s:%zu: differs from the new counts:\n  there: %.*s%s\n  now:   %.*s%s", path,
                            line, (int)strcspn(kept, "\n"), kept, end_of_line(kept),
                            (int)strcspn(counted, "\n"), counted, end_of_line(counted));
-        }
         kept += length;
         if (left_out) continue;
         counted += length;
@@ -139,21 +131,19 @@ static RtStatus compare_file(Again *again, RtResultFile file, RtError *error) {
 
 static RtStatus compare_all(Again *again, RtError *error) {
     const RtExperiment *experiment = again->results->experiment;
-    RtStatus status = RT_OK;
-    for (RtResultFile file = 0; status == RT_OK && file < RT_RESULT_FILE_COUNT; file++) {
+    for (RtResultFile file = 0; file < RT_RESULT_FILE_COUNT; file++) {
         if (rt_result_file_sort(experiment, file) == RT_FILE_COUNTED)
-            status = compare_file(again, file, error);
+            RT_TRY(compare_file(again, file, error));
     }
-    if (status != RT_OK || !again->missing) return status;
+    if (!again->missing) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
                    "%s: '%s' was not compared, because its scene is missing here: get it first, as "
                    "`scenes/fetch.sh` does for the public meshes, or start raytally where it was measured",
                    again->directory, again->missing);
 }
 
-/* Says why counts of another version may differ. */
 static void tell_version(const char *directory) {
-    json_t *manifest;
+    json_auto_t *manifest = NULL;
     if (rt_manifest_read(directory, &manifest, NULL) != RT_OK) return;
     const json_t *counts = json_object_get(manifest, "counts");
     if (counts && json_integer_value(counts) != RT_COUNTS_VERSION)
@@ -161,7 +151,6 @@ static void tell_version(const char *directory) {
                 "raytally: %s has counts of version %" JSON_INTEGER_FORMAT
                 ", and this raytally makes version %d: some may differ (tests/golden/CHANGES.md)\n",
                 directory, json_integer_value(counts), RT_COUNTS_VERSION);
-    json_decref(manifest);
 }
 
 /* A scene that is another than it was is the reason for other counts. */
@@ -193,13 +182,12 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
                    .results = results,
                    .only = {.parts[0].scene = scene, .part_count = 1},
                    .scene = scene};
-    if (status == RT_OK) status = rt_selection_check(&again.only, &original, error);
-    if (status == RT_OK) status = rt_results_init(results, &original, error);
-    if (status == RT_OK) status = count_again(results, &again.only, error);
-    if (status == RT_OK) status = check_scenes(&again, then, error);
-    if (status == RT_OK) status = compare_all(&again, error);
-    rt_results_clear(results);
-    return status;
+    RT_TRY(status);
+    RT_TRY(rt_selection_check(&again.only, &original, error));
+    RT_TRY(rt_results_init(results, &original, error));
+    RT_TRY(count_again(results, &again.only, error));
+    RT_TRY(check_scenes(&again, then, error));
+    return compare_all(&again, error);
 }
 
 static const RtOption options[] = {

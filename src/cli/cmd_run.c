@@ -3,13 +3,9 @@
 #include "claims/claims.h"
 #include "cli/cli.h"
 #include "cli/jobs.h"
-#include "cli/plugins.h"
-#include "cli/progress.h"
 #include "core/base/words.h"
 #include "measure/result_files.h"
 #include "report/report.h"
-#include "results/journal.h"
-#include "results/result_directory.h"
 #include "results/result_tables.h"
 #include "run/run.h"
 
@@ -94,7 +90,6 @@ static const RtOption options[] = {
 
 /* ---- before ---- */
 
-/* The line of a cell in --dry-run. */
 static void print_cell(const RtResults *results, const RtCellCursor *at) {
     const RtExperiment *e = results->experiment;
     const RtWorkloadResult *workload = &results->workloads[at->workload];
@@ -125,12 +120,10 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, bool list, 
     return RT_OK;
 }
 
-/* The folder of the directories of several experiments. */
 static const char *folder_of(const Options *o) {
     return o->out ? o->out : "results";
 }
 
-/* The command that continues the run, or the runs. */
 static void go_on(const Options *o, const RtExperiment *e, char out[MOST_COMMAND]) {
     const RtWorkloadOptions *how = &o->how.workload;
     const size_t size = MOST_COMMAND;
@@ -162,7 +155,7 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     go_on(o, results->experiment, command);
     rt_stop_continue(how->directory, command);
     RtStatus status = rt_run_experiment(results, how, error);
-    rt_progress_end(&progress);
+    rt_progress_clear();
     if (status != RT_OK) return status;
     rt_print_summary(results, stdout);
     if (!how->workload.only.part_count && !how->workload.only.shards)
@@ -171,12 +164,11 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     return o->strict ? rt_claims_check(results, error) : RT_OK;
 }
 
-/* Loads a YAML, or the experiment of a manifest.json. */
 static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
     const char *path = o->paths[o->current];
     char folder[RT_MAX_PATH];
     o->found = rt_ends_in(path, RT_MANIFEST);
-    if (!o->found) return rt_experiment_load(experiment, path, o->quick, error);
+    if (!o->found) return rt_experiment_load(experiment, path, o->quick, NULL, error);
     if (o->quick)
         return rt_fail(error, RT_BAD_INPUT, "--quick: %s says which variant it was; leave --quick out", path);
     rt_path_folder(path, folder);
@@ -185,7 +177,6 @@ static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
     return status;
 }
 
-/* Where the results of the experiment go. */
 static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtError *error) {
     const RtSelection *only = &o->how.workload.only;
     char name[RT_MAX_WORD + 8];
@@ -199,7 +190,7 @@ static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtE
 
 /* With --resume and --force, says what cannot be resumed, and starts it over. */
 static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError *error) {
-    RtResults results;
+    RT_OWNED(RtResults, results, rt_results_clear);
     RtRunOptions *how = &o->how;
     bool goes_on;
     char path[RT_MAX_PATH];
@@ -210,7 +201,6 @@ static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError
     if (status == RT_OK && goes_on) {
         status = rt_results_init(&results, experiment, error);
         if (status == RT_OK) status = rt_journal_load(path, &results, &how->workload.only, error);
-        rt_results_clear(&results);
     }
     if (status != RT_BAD_INPUT) return status;
     fprintf(stderr, "raytally: %s; --force starts %s over\n", error->message, how->directory);
@@ -220,7 +210,7 @@ static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError
 
 static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     RtRunOptions *how = &o->how;
-    RtResults results;
+    RT_OWNED(RtResults, results, rt_results_clear);
     RT_TRY(load(o, experiment, error));
     if (*experiment->warning.message) fprintf(stderr, "raytally: %s\n", experiment->warning.message);
     RT_TRY(rt_selection_check(&how->workload.only, experiment, error));
@@ -234,11 +224,8 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     RT_TRY(choose_start(o, experiment, error));
     if (o->threads >= 0) how->workload.threads = how->workload.timing = o->threads;
     if (!o->found && how->scripts == RT_SCRIPTS_SHIPPED) how->scripts = RT_SCRIPTS_OWN;
-    RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK)
-        status = o->dry ? dry_run(&results, how, o->count == 1, error) : measure(o, &results, error);
-    rt_results_clear(&results);
-    return status;
+    RT_TRY(rt_results_init(&results, experiment, error));
+    return o->dry ? dry_run(&results, how, o->count == 1, error) : measure(o, &results, error);
 }
 
 /* ---- several ---- */

@@ -153,7 +153,6 @@ static void print_path(const RtPath *path, const Options *o, const char *title, 
 
 enum { PAGE = 100, LEAST_HIT = 16 }; /* characters: of a line, and of the column of objects */
 
-/* A row of the tree as text. */
 enum { NUMBER, RAY, T, HIT, FACTOR, COLUMNS };
 typedef struct Row {
     char of[COLUMNS][2 * RT_MAX_DEPTH + RT_TREE_HIT_TEXT];
@@ -366,62 +365,54 @@ static RtStatus show_tree(const Options *o, const RtScene *scene, const RtRayTre
 /* The counts of each ray of the tree are those of the ray traced on its own. */
 static RtStatus trace_tree(const Options *o, const RtScene *scene, RtAccel *accel, const char *spec,
                            RtError *error) {
-    RtRayTree tree;
+    RT_OWNED(RtRayTree, tree, rt_ray_tree_clear);
     RT_ARENA(arena);
     RT_TRY(rt_ray_trees_trace(&tree, accel, &(RtSample){o->pixel.x, o->pixel.y}, 1, o->depth, error));
     RtTally *costs = rt_arena_alloc(&arena, tree.count, sizeof(RtTally));
     json_t **nodes = rt_arena_alloc(&arena, tree.count, sizeof *nodes);
-    RtStatus status = rt_arena_check(&arena, "the counts of rays", error);
-    for (uint32_t i = 0; i < tree.count && status == RT_OK; i++) {
-        RtPath path;
-        status = rt_path_trace(&path, accel, &tree.rays[i].ray, error);
-        if (status != RT_OK) break;
+    RT_TRY(rt_arena_check(&arena, "the counts of rays", error));
+    for (uint32_t i = 0; i < tree.count; i++) {
+        RT_OWNED(RtPath, path, rt_path_clear);
+        RT_TRY(rt_path_trace(&path, accel, &tree.rays[i].ray, error));
         costs[i] = path.tally;
-        rt_path_clear(&path);
     }
-    if (status == RT_OK) status = show_tree(o, scene, &tree, costs, nodes, spec, error);
-    rt_ray_tree_clear(&tree);
-    return status;
+    return show_tree(o, scene, &tree, costs, nodes, spec, error);
 }
 
 static RtStatus trace_path(const Options *o, const RtScene *scene, RtAccel *accel, const char *spec,
                            RtError *error) {
     char title[512], what[64];
     RtRay ray;
-    RtPath path;
+    RT_OWNED(RtPath, path, rt_path_clear);
     RT_TRY(rt_path_ray(accel, o->kind, o->pixel.x, o->pixel.y, o->light, &ray, error));
     RT_TRY(rt_path_trace(&path, accel, &ray, error));
     snprintf(what, sizeof what, "%s ray", rt_ray_kind_name(o->kind));
     make_title(o, scene, what, title, sizeof title);
-    RtStatus status = o->svg ? rt_path_draw(&path, scene, title, o->accel, o->svg, error) : RT_OK;
-    if (status == RT_OK && o->json) {
+    if (o->svg) RT_TRY(rt_path_draw(&path, scene, title, o->accel, o->svg, error));
+    if (o->json) {
         rt_cli_print_json(path_json(&path, o, spec));
-    } else if (status == RT_OK) {
-        printf("%s\n", spec);
-        print_path(&path, o, title, &scene->geometry);
-        if (o->svg) printf("wrote %s\n", o->svg);
+        return RT_OK;
     }
-    rt_path_clear(&path);
-    return status;
+    printf("%s\n", spec);
+    print_path(&path, o, title, &scene->geometry);
+    if (o->svg) printf("wrote %s\n", o->svg);
+    return RT_OK;
 }
 
 static RtStatus run(const Options *o, RtError *error) {
     RtSpec spec;
     char text[RT_MAX_SPEC_CHARS];
-    RtScene scene;
-    RtAccel *accel = NULL;
+    RT_OWNED(RtScene, scene, rt_scene_clear);
+    RT_OWNED(RtAccel *, accel, rt_accel_destroy_at);
     RT_TRY(rt_spec_parse(o->accel, &spec, error));
     rt_spec_format(&spec, text);
     if (o->json) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &scene, error));
-    RtStatus status = rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error);
-    if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->pixel, error);
-    if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
-    if (status == RT_OK) status = rt_path_available(accel, text, error);
-    if (status == RT_OK) status = (o->depth > 0 ? trace_tree : trace_path)(o, &scene, accel, text, error);
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
-    return status;
+    RT_TRY(rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error));
+    RT_TRY(rt_cli_check_pixel(&scene.sampling, o->pixel, error));
+    RT_TRY(rt_accel_build(&spec, &scene, 0, &accel, error));
+    RT_TRY(rt_path_available(accel, text, error));
+    return (o->depth > 0 ? trace_tree : trace_path)(o, &scene, accel, text, error);
 }
 
 const RtSyntax rt_trace_syntax = {

@@ -3,8 +3,6 @@
  * wrong? The command line of verify/verify.h and verify/replay.h. */
 #include "cli/cli.h"
 #include "cli/jobs.h"
-#include "cli/plugins.h"
-#include "cli/progress.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
@@ -308,11 +306,10 @@ static void on_row(void *context, const json_t *row) {
     rt_progress_clear();
     if (!show->options->json) print_row(show, row);
     const bool refused = !json_is_null(json_object_get(row, "refused"));
-    if (refused || !json_is_null(json_object_get(row, "problem"))) {
+    if (refused || !json_is_null(json_object_get(row, "problem")))
         fprintf(stderr, "raytally: %s on %s: %s%s\n", rt_json_text(row, "accel", ""),
                 rt_json_text(row, "scene", ""), refused ? "refused: " : "",
                 rt_json_text(row, refused ? "refused" : "problem", ""));
-    }
     show->failed |= rt_verify_row_fails(row);
 }
 
@@ -403,9 +400,8 @@ static RtStatus verify(const Options *o, bool *failed, RtError *error) {
     json_t *rows;
     RtStatus status = rt_verify_run(&o->work, &observer, &rows, error);
     rt_progress_clear();
-    if (status == RT_OK && o->json) {
+    if (status == RT_OK && o->json)
         rt_cli_print_json(json_pack("{s:I, s:O}", "seed", (json_int_t)o->work.rays.seed, "rows", rows));
-    }
     if (status == RT_OK && !o->json) status = print_totals(o, rows, error);
     const RtVerifySum total = status == RT_OK ? rt_verify_total(rows) : (RtVerifySum){0};
     if (total.rows > 0 && total.refused == total.rows) /* refused rows are results, if there are others */
@@ -434,7 +430,7 @@ static void print_answer(const char *where, const RtFailure *failure, const RtAn
 
 /* Traces the ray in the original scene and in the shrunk one; one of them suffices. */
 static RtStatus replay(const Options *o, bool *failed, RtError *error) {
-    RtReplay file;
+    RT_OWNED(RtReplay, file, rt_replay_clear);
     RtStatus status = RT_OK;
     RT_TRY(rt_replay_load(&file, o->replay, error));
     file.failure.threads = o->work.rays.threads;
@@ -453,7 +449,6 @@ static RtStatus replay(const Options *o, bool *failed, RtError *error) {
             status = RT_OK;
         }
     }
-    rt_replay_clear(&file);
     if (status != RT_OK || asked > 0) return status;
     return rt_fail(error, RT_BAD_INPUT, "%s: the ray cannot be traced again", o->replay);
 }

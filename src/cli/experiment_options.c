@@ -2,7 +2,6 @@
 #include "cli/experiment_options.h"
 
 #include "cli/cli.h"
-#include "render/frame.h"
 #include "run/callgrind.h"
 #include "verify/spread.h"
 
@@ -80,9 +79,8 @@ void rt_take_callgrind(void *options, const char *text, struct argp_state *state
 void rt_add_accel(RtExperiment *experiment, const char *text, struct argp_state *state) {
     RtError error;
     RtCandidate like = {.entry = experiment->candidate_count, .ray_stride = 1};
-    if (strlen(text) >= RT_MAX_SPEC_CHARS) {
+    if (strlen(text) >= RT_MAX_SPEC_CHARS)
         argp_error(state, "--accel: a spec has at most %d characters", RT_MAX_SPEC_CHARS - 1);
-    }
     strcpy(like.spec, text);
     if (rt_experiment_add_accels(experiment, &like, &error) != RT_OK)
         argp_error(state, "--accel: %s", error.message);

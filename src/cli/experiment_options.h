@@ -5,7 +5,6 @@
 #define RT_CLI_EXPERIMENT_OPTIONS_H
 
 #include "cli/cli.h"
-#include "experiment/experiment.h"
 
 typedef struct RtExperimentOptions {
     RtExperiment experiment; /* megabytes; the caller adds its scenes, which are ... */

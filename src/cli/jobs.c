@@ -2,7 +2,6 @@
 #include "cli/jobs.h"
 
 #include "cli/cli.h"
-#include "cli/progress.h"
 #include "core/base/clock.h"
 #include "core/base/file.h"
 #include "core/base/process.h"

@@ -4,7 +4,6 @@
 #include "accel/plugin.h"
 #include "cli/cli.h"
 #include "cli/jobs.h"
-#include "cli/plugins.h"
 #include "core/base/memory.h"
 #include "core/base/versions.h"
 #include "core/base/words.h"
@@ -41,7 +40,7 @@ static void print_usage(FILE *to) {
 
 /* What is built, what of it runs here, and the numbers of docs/interface.md. */
 static void print_version(void) {
-    json_t *machine = rt_machine_json();
+    json_auto_t *machine = rt_machine_json();
     char libraries[256] = "";
     rt_machine_libraries(machine, " ", libraries, sizeof libraries);
     printf("raytally " RT_VERSION
@@ -54,7 +53,6 @@ static void print_version(void) {
     }
     printf("\ninterface: %d, of plugins: %d\nfile format: %d\ncounts: %d\n", RAYTALLY_ABI_VERSION,
            RAYTALLY_ACCEL_ABI, RT_FILE_FORMAT, RT_COUNTS_VERSION);
-    json_decref(machine);
 }
 
 /* NULL, and a message, if there is none. */

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cli/plugins.h"
+#include "cli/cli.h"
 
 #include "accel/plugin.h"
-#include "core/base/file.h"
 #include "core/base/words.h"
 #include "experiment/plugins_used.h"
-#include "results/result_directory.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -108,17 +106,15 @@ void rt_cli_plugin_arguments(char *out, size_t size) {
 }
 
 void rt_cli_tell_plugins(const char *directory, const RtExperiment *experiment) {
-    json_t *manifest, *change;
+    json_auto_t *manifest = NULL;
+    json_t *change;
     const char *name;
     if (rt_manifest_read(directory, &manifest, NULL) != RT_OK) return;
-    json_t *then = rt_plugins_used_then(experiment, manifest);
-    json_t *changed = rt_plugins_changed_since(then, experiment);
+    json_auto_t *then = rt_plugins_used_then(experiment, manifest);
+    json_auto_t *changed = rt_plugins_changed_since(then, experiment);
     json_object_foreach(changed, name, change) {
         char sentence[RT_MAX_PLUGIN_CHANGE];
         rt_plugins_change_format(name, change, "then", "now", sentence);
         fprintf(stderr, "raytally: %s%smanifest.json: %s\n", directory, *directory ? "/" : "", sentence);
     }
-    json_decref(changed);
-    json_decref(then);
-    json_decref(manifest);
 }

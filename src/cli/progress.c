@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cli/progress.h"
+#include "cli/cli.h"
 
 #include "core/base/clock.h"
 #include "core/base/words.h"
@@ -109,8 +109,4 @@ void rt_progress_begin(RtProgress *progress, RtWorkloadOptions *options) {
                              .shown = now,
                              .every = LINE_EVERY};
     options->observer = (RtRunObserver){progress, on_event, rt_progress_notice};
-}
-
-void rt_progress_end(const RtProgress *progress) {
-    if (progress->terminal) fputs("\r\033[K", stderr);
 }

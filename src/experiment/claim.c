@@ -137,11 +137,10 @@ static RtStatus read_accel(Reader *r, char accel[RT_MAX_LABEL], bool may_be_all)
     if (!found) return fail_choice(r, word(r), "the label of one of the accelerators", &choice);
     const RtClaimMeasure of_structure =
         r->claim->first >= RT_CLAIM_BUILD_TIME ? r->claim->first : r->claim->measure;
-    if (is_best(r, word(r)) && of_structure >= RT_CLAIM_BUILD_TIME) {
+    if (is_best(r, word(r)) && of_structure >= RT_CLAIM_BUILD_TIME)
         return fail(r,
                     "'%s' is another setting for each kind of rays, each with its own %s: name one of them",
                     word(r), measures[of_structure]);
-    }
     snprintf(accel, RT_MAX_LABEL, "%s", r->words[r->at++]);
     return RT_OK;
 }

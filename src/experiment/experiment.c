@@ -108,10 +108,9 @@ static RtStatus append_best(RtExperiment *experiment, const char *label, RtError
     char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS];
     size_t count = 0, all = 0;
     RT_TRY(rt_best_specs(label, specs, &count, &all, error));
-    if (experiment->candidate_count + all > RT_MAX_CANDIDATES) {
+    if (experiment->candidate_count + all > RT_MAX_CANDIDATES)
         return rt_fail(error, RT_BAD_INPUT, "'%s' expands to %zu accelerators: an experiment has at most %d",
                        label, all, RT_MAX_CANDIDATES);
-    }
     for (size_t i = 0; i < all; i++) {
         RtCandidate candidate = {.missing = i >= count};
         memcpy(candidate.spec, specs[i], sizeof candidate.spec);
@@ -173,7 +172,6 @@ static void label_files(RtExperiment *experiment, uint32_t i) {
     }
 }
 
-/* Sets what is shown of all scenes and accelerators. */
 static void shorten_labels(RtExperiment *experiment) {
     const char *labels[RT_MAX_CANDIDATES];
     const uint32_t count = experiment->candidate_count;
@@ -243,14 +241,12 @@ static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *e
 }
 
 static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
-    if (experiment->baseline >= experiment->candidate_count) {
+    if (experiment->baseline >= experiment->candidate_count)
         return rt_fail(error, RT_BAD_INPUT, "this is not the label of one of the accelerators");
-    }
     const RtCandidate *baseline = &experiment->candidates[experiment->baseline];
-    if (baseline->missing) {
+    if (baseline->missing)
         return rt_fail(error, RT_NOT_AVAILABLE, "the baseline '%s' is not in this build: choose another",
                        baseline->label);
-    }
     if (baseline->ray_stride == 1 && !baseline->excluded) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
                    "the baseline '%s' must be measured on every ray of every scene: choose another, or "
@@ -261,9 +257,8 @@ static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
 /* All scripts are copied into one folder (experiment/scripts.h). */
 static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *error) {
     const char *name = rt_plot_name(experiment, i);
-    if (!*name || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
+    if (!*name || strcmp(name, ".") == 0 || strcmp(name, "..") == 0)
         return rt_fail(error, RT_BAD_INPUT, "'%s' does not name a gnuplot script", experiment->plots[i]);
-    }
     bool taken = false;
     for (uint32_t k = 0; k < i; k++) taken |= strcmp(name, rt_plot_name(experiment, k)) == 0;
     if (!taken) return RT_OK;
@@ -350,10 +345,9 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
         return rt_fail(error, RT_BAD_INPUT,
                        "rendering is timed, and `count_only` times nothing: leave one out");
     strcpy(where, "name");
-    if (*experiment->name == '.') {
+    if (*experiment->name == '.')
         return rt_fail(error, RT_BAD_INPUT,
                        "'%s' cannot name a result directory: begin it with another letter", experiment->name);
-    }
     return check_label(experiment->name, error);
 }
 

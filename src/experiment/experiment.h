@@ -172,13 +172,12 @@ typedef struct RtExperiment {
 void rt_experiment_init(RtExperiment *experiment);
 
 /* Reads the YAML at `path`. Reports any error (unknown keys, invalid specs, duplicate labels, a baseline that
- * is no candidate) with its line. `quick` applies the overrides under `quick:`. */
-RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error);
-
-/* The same for the YAML of existing results, to read them only: accelerators, baseline and missing ones are
- * those of the manifest; this build may lack them. The experiment cannot be run. */
-RtStatus rt_experiment_load_from_manifest(RtExperiment *experiment, const char *path, const json_t *manifest,
-                                          RtError *error);
+ * is no candidate) with its line. `quick` applies the overrides under `quick:`.
+ *
+ * With a manifest, else NULL, it is the YAML of existing results, to read them only: accelerators, baseline
+ * and missing ones are those of the manifest; this build may lack them. The experiment cannot be run. */
+RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, const json_t *manifest,
+                            RtError *error);
 
 /* Whether `hash`, in a journal or a manifest, is that of this version of the experiment. */
 bool rt_experiment_has_hash(const RtExperiment *experiment, const json_t *hash);

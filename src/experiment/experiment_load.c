@@ -37,9 +37,8 @@ static RtStatus read_labels(const RtYaml *y, const RtYamlNode *n, const char *ke
     const RtYamlNode *list = rt_yaml_get(y, n, key);
     RT_TRY(rt_yaml_list(y, list, NULL, 1, size, key));
     if (list) *count = 0;
-    for (const RtYamlNode *e = rt_yaml_first(list); e != rt_yaml_end(list); e += e->size) {
+    for (const RtYamlNode *e = rt_yaml_first(list); e != rt_yaml_end(list); e += e->size)
         RT_TRY(rt_yaml_copy(y, e, NULL, RT_MAX_WORD, labels[(*count)++]));
-    }
     return RT_OK;
 }
 
@@ -326,9 +325,8 @@ bool rt_experiment_has_hash(const RtExperiment *experiment, const json_t *hash) 
     return good && (value == experiment->fingerprint || value == experiment->fingerprint_with_plots);
 }
 
-/* With a manifest the experiment is that of results. */
-static RtStatus load(RtExperiment *experiment, const char *path, bool quick, const json_t *manifest,
-                     RtError *error) {
+RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, const json_t *manifest,
+                            RtError *error) {
     char *text;
     size_t length;
     RtYaml yaml;
@@ -349,13 +347,4 @@ static RtStatus load(RtExperiment *experiment, const char *path, bool quick, con
     rt_yaml_close(&yaml);
     experiment->manifest = NULL;
     return status;
-}
-
-RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error) {
-    return load(experiment, path, quick, NULL, error);
-}
-
-RtStatus rt_experiment_load_from_manifest(RtExperiment *experiment, const char *path, const json_t *manifest,
-                                          RtError *error) {
-    return load(experiment, path, json_is_true(json_object_get(manifest, "quick")), manifest, error);
 }

@@ -38,10 +38,8 @@ static json_t *used_of(const RtExperiment *experiment, const json_t *plugins) {
 }
 
 json_t *rt_plugins_used(const RtExperiment *experiment) {
-    json_t *plugins = rt_plugins_json();
-    json_t *used = used_of(experiment, plugins);
-    json_decref(plugins);
-    return used;
+    json_auto_t *plugins = rt_plugins_json();
+    return used_of(experiment, plugins);
 }
 
 json_t *rt_plugins_used_then(const RtExperiment *experiment, const json_t *manifest) {
@@ -64,9 +62,8 @@ json_t *rt_plugins_changed(const json_t *before, const json_t *after) {
 }
 
 json_t *rt_plugins_changed_since(const json_t *before, const RtExperiment *experiment) {
-    json_t *now = rt_plugins_used(experiment), *changed = rt_plugins_changed(before, now);
-    json_decref(now);
-    return changed;
+    json_auto_t *now = rt_plugins_used(experiment);
+    return rt_plugins_changed(before, now);
 }
 
 bool rt_plugins_concern(const json_t *object, const RtExperiment *experiment, uint32_t candidate) {

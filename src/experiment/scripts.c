@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "experiment/scripts.h"
 
-#include "core/base/memory.h"
-
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>

@@ -7,7 +7,6 @@
 #ifndef RT_EXPERIMENT_SCRIPTS_H
 #define RT_EXPERIMENT_SCRIPTS_H
 
-#include "core/base/file.h"
 #include "experiment/experiment.h"
 
 /* Which gnuplot scripts may run. */

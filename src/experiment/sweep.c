@@ -81,10 +81,9 @@ static RtStatus label_sweep(const char *given, const RtSwept *swept, char stem[R
     strcpy(stem, given);
     snprintf(whole, sizeof whole, "%s", given);
     rt_swept_name(swept, NULL, whole, sizeof whole);
-    if (strlen(whole) >= RT_MAX_LABEL) {
+    if (strlen(whole) >= RT_MAX_LABEL)
         return rt_fail(error, RT_BAD_INPUT, "'%s' is longer than %d characters: give a short `label`", whole,
                        RT_MAX_LABEL - 1);
-    }
     strcpy(label, whole);
     return RT_OK;
 }
@@ -387,17 +386,15 @@ static void stem_of(const Sweep *sweep, char *out, size_t size) {
 static RtStatus add_scene(RtExperiment *experiment, const RtWorkload *like, const Sweep *sweep, uint32_t i,
                           const char *folder, RtError *error) {
     char spec[RT_MAX_SPEC_CHARS], stem[RT_MAX_SPEC_CHARS];
-    if (experiment->workload_count == RT_MAX_WORKLOADS) {
+    if (experiment->workload_count == RT_MAX_WORKLOADS)
         return rt_fail(error, RT_BAD_INPUT, "there are more than %d scenes: sweep fewer values",
                        RT_MAX_WORKLOADS);
-    }
     RtWorkload *workload = &experiment->workloads[experiment->workload_count++];
     *workload = *like;
     RT_TRY(spec_at(sweep, i, spec, &workload->swept, error));
-    if (strlen(spec) >= sizeof workload->spec) {
+    if (strlen(spec) >= sizeof workload->spec)
         return rt_fail(error, RT_BAD_INPUT, "%.40s...: a scene has at most %zu characters", spec,
                        sizeof workload->spec - 1);
-    }
     strcpy(workload->spec, spec);
     workload->file = strcspn(spec, "./") < strcspn(spec, ":");
     RT_TRY(rt_path_join(workload->file ? folder : "", spec, workload->path, error));
@@ -420,10 +417,9 @@ RtStatus rt_experiment_add_scenes(RtExperiment *experiment, const RtWorkload *li
 
 static RtStatus add_accel(RtExperiment *experiment, const RtCandidate *like, const Sweep *sweep, uint32_t i,
                           RtError *error) {
-    if (experiment->candidate_count == RT_MAX_CANDIDATES) {
+    if (experiment->candidate_count == RT_MAX_CANDIDATES)
         return rt_fail(error, RT_BAD_INPUT, "there are more than %d accelerators: sweep fewer values",
                        RT_MAX_CANDIDATES);
-    }
     char spec[RT_MAX_SPEC_CHARS];
     RtCandidate *candidate = &experiment->candidates[experiment->candidate_count++];
     *candidate = *like;

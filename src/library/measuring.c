@@ -17,12 +17,10 @@ static bool learns(const RtAccel *accel) {
 /* Writes the right answers to hits[0..set->count): those of the accelerator itself, or of the default one
  * where it learns, because one that has not learned yet is very slow. */
 static RtStatus answer(const RtAccel *accel, const RtRaySet *set, int threads, RtHit *hits, RtError *error) {
-    RtAccel *other;
+    RT_OWNED(RtAccel *, other, rt_accel_destroy_at);
     if (!learns(accel)) return rt_measure_answers(accel, set, threads, hits, error);
     RT_TRY(rt_accel_open_on(rt_accel_default(), accel->scene, threads, &other, error));
-    RtStatus status = rt_measure_answers(other, set, threads, hits, error);
-    rt_accel_destroy(other);
-    return status;
+    return rt_measure_answers(other, set, threads, hits, error);
 }
 
 /* Makes an accelerator that learns forget the rays, which it knows by their addresses. Returns `status`
@@ -180,30 +178,25 @@ static RtStatus judge(const RtAccel *accel, const RtVerifyRays *wanted, const Rt
 /* Answering the rays takes longest, so the accelerator is built first: a bad spec fails at once. */
 static RtStatus verify(RtVerifyScene *stage, const RtScene *scene, const RtVerifyRays *wanted,
                        const char *spec, raytally_verify_result *out, RtError *error) {
-    RtAccel *accel;
+    RT_OWNED(RtAccel *, accel, rt_accel_destroy_at);
     RtEquivalence result;
     RtCertain certain = {0};
     RT_TRY(rt_verify_scene_init(stage, scene, wanted, error));
     RT_TRY(rt_accel_open_on(spec, &stage->scene, wanted->threads, &accel, error));
-    RtStatus status = rt_verify_scene_answer(stage, wanted, error);
-    if (status == RT_OK)
-        status = rt_equivalence_check(&stage->reference, accel, wanted->threads, &result, error);
-    if (status == RT_OK && !accel->exact)
-        status = rt_reference_certain(&stage->reference, accel->absolute, wanted->threads, &certain, error);
-    if (status == RT_OK) {
-        *out = (raytally_verify_result){.rays = result.rays,
-                                        .equal = result.verdicts[RT_EQUAL],
-                                        .tie = result.verdicts[RT_TIE],
-                                        .marginal = result.verdicts[RT_MARGINAL],
-                                        .wrong = result.verdicts[RT_WRONG],
-                                        .occluded_wrong = result.occluded_wrong,
-                                        .certain = certain.certain,
-                                        .must_hit = certain.must_hit,
-                                        .certain_of = certain.rays};
-        status = judge(accel, wanted, &result, &certain, spec, error);
-    }
-    rt_accel_destroy(accel);
-    return status;
+    RT_TRY(rt_verify_scene_answer(stage, wanted, error));
+    RT_TRY(rt_equivalence_check(&stage->reference, accel, wanted->threads, &result, error));
+    if (!accel->exact)
+        RT_TRY(rt_reference_certain(&stage->reference, accel->absolute, wanted->threads, &certain, error));
+    *out = (raytally_verify_result){.rays = result.rays,
+                                    .equal = result.verdicts[RT_EQUAL],
+                                    .tie = result.verdicts[RT_TIE],
+                                    .marginal = result.verdicts[RT_MARGINAL],
+                                    .wrong = result.verdicts[RT_WRONG],
+                                    .occluded_wrong = result.occluded_wrong,
+                                    .certain = certain.certain,
+                                    .must_hit = certain.must_hit,
+                                    .certain_of = certain.rays};
+    return judge(accel, wanted, &result, &certain, spec, error);
 }
 
 raytally_status raytally_verify(const raytally_scene *scene, const char *spec,

@@ -102,10 +102,9 @@ RtStatus rt_options_take(void *own, size_t size, const void *given, const char *
     size_t given_size;
     if (!given) return RT_OK;
     memcpy(&given_size, given, sizeof given_size);
-    if (given_size < sizeof given_size || given_size > MOST_OPTION_BYTES) {
+    if (given_size < sizeof given_size || given_size > MOST_OPTION_BYTES)
         return rt_fail(error, RT_BAD_INPUT, "%s: its size cannot be %zu bytes: initialise it first", what,
                        given_size);
-    }
     for (size_t i = size; i < given_size; i++) {
         if (((const unsigned char *)given)[i] == 0) continue;
         return rt_fail(error, RT_NOT_AVAILABLE,
@@ -156,10 +155,9 @@ static RtStatus add_triangle(RtScene *scene, const raytally_objects *objects, ui
     RtVec3 vertices[3];
     for (size_t k = 0; k < 3; k++) {
         uint32_t corner = objects->corners[3 * (size_t)i + k];
-        if (corner >= objects->vertex_count) {
+        if (corner >= objects->vertex_count)
             return rt_fail(error, RT_BAD_INPUT, "corner %zu is vertex %" PRIu32 ", and there are %" PRIu32, k,
                            corner, objects->vertex_count);
-        }
         memcpy(&vertices[k], objects->vertices + 3 * (size_t)corner, sizeof vertices[k]);
     }
     return rt_scene_add_triangle(scene, material, vertices, NULL, error);
@@ -404,10 +402,9 @@ static RtStatus check_kind(enum raytally_ray_kind kind, RtError *error) {
 
 static RtStatus check_recording(const raytally_record_options *how, const RtAccel *accel, RtError *error) {
     RT_TRY(rt_threads_check(how->threads, error));
-    if (how->limit < 1 || how->limit > RT_MAX_RAYS_A_KIND) {
+    if (how->limit < 1 || how->limit > RT_MAX_RAYS_A_KIND)
         return rt_fail(error, RT_BAD_INPUT, "a limit of %llu rays: expected 1..%llu",
                        (unsigned long long)how->limit, (unsigned long long)RT_MAX_RAYS_A_KIND);
-    }
     if (accel->exact) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT, "%s is not exact: record rays by another accelerator, such as %s",
                    accel->ops->name, rt_accel_default());
@@ -497,7 +494,7 @@ uint64_t raytally_rays_fingerprint(const raytally_rays *rays) {
 
 raytally_status raytally_render(const raytally_accelerator *accelerator, uint32_t depth, int threads,
                                 const char *png, float *rgb, raytally_error *error) {
-    RtFrame frame = {0};
+    RT_OWNED(RtFrame, frame, rt_frame_clear);
     RtFrameOptions options = {.depth = depth ? depth : RT_DEFAULT_DEPTH, .threads = threads};
     RT_C_LOCALE;
     RtStatus status = rt_threads_check(threads, rt_error_of(error));
@@ -509,6 +506,5 @@ raytally_status raytally_render(const raytally_accelerator *accelerator, uint32_
             memcpy(rgb, &color, sizeof color);
         }
     }
-    rt_frame_clear(&frame);
     return (raytally_status)status;
 }

@@ -86,7 +86,6 @@ typedef struct CubeMap {
     double em;
 } CubeMap;
 
-/* The scene's axis for `signed_axis` of a face. */
 static int axis_of(const CubeMap *map, int signed_axis) {
     int axis = (signed_axis < 0 ? -signed_axis : signed_axis) - 1;
     return (axis + map->up + 2) % 3;
@@ -96,7 +95,6 @@ static void add_axis(const CubeMap *map, int signed_axis, float amount, RtVec3 *
     direction->at[axis_of(map, signed_axis)] += signed_axis < 0 ? -amount : amount;
 }
 
-/* From the light through the middle of a pixel of the face. */
 static RtVec3 direction_of(const CubeMap *map, const Face *face, int x, int y) {
     RtVec3 direction = {{0, 0, 0}};
     add_axis(map, face->middle, 1, &direction);

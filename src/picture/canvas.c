@@ -12,7 +12,6 @@
 
 /* ---- colours ---- */
 
-/* Interpolates between `count` equidistant colours. */
 static RtColor between(const uint8_t stops[][3], int count, double position) {
     double at = (count - 1) * (position > 0 ? fmin(position, 1) : 0);
     int below = at < count - 1 ? (int)at : count - 2;
@@ -350,10 +349,6 @@ static double put_mark(Bar *bar, double value) {
     rt_draw_text(bar->cairo, from, bar->y + 2.1 * bar->em, RT_BLACK, "%s", text);
     bar->free_from = from + width + 0.5 * bar->em;
     return from;
-}
-
-double rt_scale_height(double size) {
-    return 2.4 * size;
 }
 
 void rt_draw_scale(cairo_t *cairo, double x, double y, double width, const RtScale *scale) {

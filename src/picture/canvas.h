@@ -119,9 +119,9 @@ typedef struct RtScale {
 } RtScale;
 double rt_scale_position(const RtScale *scale, double value);
 
-/* Draws a bar with the scale's colours and round values below, in black, `rt_scale_height` high. Scales that
+/* Draws a bar with the scale's colours and round values below, in black, RT_SCALE_HEIGHT high. Scales that
  * start below 0 use the colours of differences. */
+#define RT_SCALE_HEIGHT 2.4 /* font sizes */
 void rt_draw_scale(cairo_t *cairo, double x, double y, double width, const RtScale *scale);
-double rt_scale_height(double font_size);
 
 #endif

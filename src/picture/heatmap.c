@@ -93,7 +93,7 @@ static void draw_legend(const Drawing *d) {
     rt_draw_scale(d->cairo, d->pad, top, width - 2 * d->pad, &d->scale);
     if (d->options->difference)
         rt_draw_scale(d->cairo, 2 * d->pitch + d->pad, top, d->pitch - GAP - 2 * d->pad, &d->difference);
-    rt_draw_text(d->cairo, d->pad, top + rt_scale_height(d->em) + d->em, RT_BLACK, "%s, %s, %s rays",
+    rt_draw_text(d->cairo, d->pad, top + RT_SCALE_HEIGHT * d->em + d->em, RT_BLACK, "%s, %s, %s rays",
                  rt_tally_name(d->options->counter), d->scale.logarithmic ? "log" : "linear",
                  d->options->rays ? d->options->rays : "all");
 }
@@ -110,7 +110,7 @@ RtStatus rt_heatmap_draw(const char *file, const RtHeatmapPanel *panels, uint32_
     d.em = rt_font_size(all > 1 ? s->width : d.width);
     d.pad = 0.5 * d.em;
     d.top = panels[0].label ? ceil((RT_LINE + 0.3) * d.em) : 0;
-    double below = ceil(2 * d.pad + 2 * RT_LINE * d.em + rt_scale_height(d.em));
+    double below = ceil(2 * d.pad + 2 * RT_LINE * d.em + RT_SCALE_HEIGHT * d.em);
     find_scales(&d);
     RT_TRY(rt_canvas_open(&canvas, file, d.width, d.top + s->height + below, d.em, error));
     d.cairo = canvas.cairo;

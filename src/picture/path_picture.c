@@ -46,12 +46,10 @@ static RtPoint point_at(const Drawing *d, const Window *window, double t) {
     return rt_section_point(&window->section, rt_add_scaledd(rt_widen(ray->org), rt_widen(ray->dir), t));
 }
 
-/* The pixel of t in the detail. */
 static double x_of(const Drawing *d, double t) {
     return point_at(d, &d->detail, t).x;
 }
 
-/* Of both windows. */
 static void choose_plane(Drawing *d) {
     RtSection plane = {.scale = 1};
     RtVec3d dir = rt_widen(d->path->ray.dir);
@@ -66,7 +64,6 @@ static void choose_plane(Drawing *d) {
     d->detail.section = d->overview.section = plane;
 }
 
-/* An interval of t. */
 typedef struct Part {
     double first, last;
 } Part;
@@ -148,7 +145,6 @@ static void choose_windows(Drawing *d) {
 
 /* ---- shapes ---- */
 
-/* Of the order of rows: from dark to light. */
 static RtColor row_color(const RtPath *path, uint32_t row) {
     return rt_color_scale(path->count > 1 ? 0.8 * row / (path->count - 1) : 0);
 }
@@ -325,7 +321,6 @@ static void draw_row(const Drawing *d, uint32_t i, double y) {
         rt_draw_disc(d->cairo, (RtPoint){x_of(d, (double)row->t), y + ROW / 2.0}, 4, hit_color);
 }
 
-/* Draws consecutive object tests that missed as one row. */
 static void draw_run(const Drawing *d, uint32_t first, uint32_t run, double y) {
     rt_draw_text(d->cairo, MARGIN, y + ROW - 3, RT_BLACK, "%u to %u  %u object tests: missed", first + 1,
                  first + run, run);
@@ -358,7 +353,6 @@ static uint32_t draw_rows(const Drawing *d, double top, bool draw, uint32_t *lef
     return line;
 }
 
-/* Ticks at round values of t. */
 static void draw_axis(const Drawing *d, double y, double bottom) {
     const double per_t = d->detail.section.scale * d->speed; /* pixels */
     double from = (LEFT - x_of(d, 0)) / per_t, to = from + PLOT / per_t, step = 1;

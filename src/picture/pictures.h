@@ -6,7 +6,6 @@
 #ifndef RT_PICTURE_PICTURES_H
 #define RT_PICTURE_PICTURES_H
 
-#include "render/frame.h"
 #include "render/path.h"
 #include "render/ray_tree.h"
 

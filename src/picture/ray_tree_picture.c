@@ -57,7 +57,6 @@ static RtVec3d end_of(const RtTreeRay *ray) {
     return rt_ray_point(&ray->ray, isfinite((double)ray->hit.t) ? ray->hit.t : 0);
 }
 
-/* A unit vector across `along`. */
 static RtVec3d across(RtVec3d along, RtVec3d wish) {
     RtVec3d rest = rt_add_scaledd(wish, along, -rt_dotd(wish, along));
     if (rt_lengthd(rest) > 1e-3) return rt_normalized(rest);

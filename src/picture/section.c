@@ -195,7 +195,6 @@ void rt_outline_edges(const RtBoxView *view, RtVec3d eye, RtLineViewer viewer) {
 
 /* ---- objects ---- */
 
-/* The line in which the plane cuts a flat object. */
 static void add_flat(const RtSection *section, cairo_t *cairo, const RtVec3 *corners, uint32_t count) {
     RtPoint cut[2];
     int crossings = 0;

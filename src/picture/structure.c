@@ -36,12 +36,10 @@ typedef struct Drawing {
 
 /* ---- which boxes, in which lines ---- */
 
-/* Empty leaves are left out. */
 static bool is_empty_leaf(const Drawing *d, const RtBoxView *view) {
     return d->layer->ops->shows_lists && view->leaf && view->objects == 0;
 }
 
-/* Is the box within the requested levels and slice? */
 static bool is_shown(const Drawing *d, const RtBoxView *view) {
     const RtStructureOptions *o = d->options;
     if (rt_box_is_empty(*view->box) || view->depth < o->first_level || view->depth > o->last_level ||
@@ -54,7 +52,6 @@ static double size_of(const RtBox *box) {
     return rt_lengthd(rt_subd(rt_widen(box->hi), rt_widen(box->lo)));
 }
 
-/* Counts a box, and notes levels and sizes. */
 static void count_box(void *context, const RtBoxView *view) {
     Drawing *d = context;
     d->all += !is_empty_leaf(d, view);
@@ -108,7 +105,6 @@ static double inside(const Drawing *d, RtVec3d p, int plane) {
     }
 }
 
-/* Clips the segment to the view frustum; false if nothing is left. */
 static bool clip(const Drawing *d, RtVec3d *a, RtVec3d *b) {
     for (int plane = 0; plane < 5; plane++) {
         double at_a = inside(d, *a, plane), at_b = inside(d, *b, plane);
@@ -120,7 +116,6 @@ static bool clip(const Drawing *d, RtVec3d *a, RtVec3d *b) {
     return a->z > 0 && b->z > 0;
 }
 
-/* The sample in the middle of a pixel. */
 static size_t sample_of(const Drawing *d, uint32_t x, uint32_t y) {
     RtFootprint f = rt_pixel_footprint(&d->frame->sampling, x, y);
     return (size_t)(f.row + f.span / 2) * d->frame->sampling.columns + f.column + f.span / 2;
@@ -163,7 +158,6 @@ static void draw_box(void *context, const RtBoxView *view) {
     }
 }
 
-/* White where nothing is seen, and pale elsewhere. */
 static RtColor pale_color(const void *drawing, uint32_t x, uint32_t y) {
     const Drawing *d = drawing;
     const RtVec3 seen = rt_frame_pixel(d->frame, x, y);

@@ -3,10 +3,7 @@
  * own stream of random numbers, numbered by kind and index. */
 #include "rays/rayset.h"
 
-#include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "core/base/random.h"
-#include "render/illumination.h"
 
 #include <assert.h>
 #include <string.h>
@@ -85,9 +82,7 @@ static RtStatus make_occlusion(Recorder *recorder, RtError *error) {
 
 static RtVec3 point_of_sphere(RtRandom *random, const RtBall *sphere) {
     RtVec3 p = rt_narrow(rt_add_scaledd(sphere->center, rt_random_direction(random), sphere->radius));
-    for (int a = 0; a < 3; a++) {
-        p.at[a] = rt_maxf(-RT_MAX_COORDINATE, rt_minf(p.at[a], RT_MAX_COORDINATE));
-    }
+    for (int a = 0; a < 3; a++) p.at[a] = rt_maxf(-RT_MAX_COORDINATE, rt_minf(p.at[a], RT_MAX_COORDINATE));
     return p;
 }
 
@@ -201,9 +196,8 @@ RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtR
     to->count = 0;
     for (uint64_t group = 0; group * stride * run < from->count; group++) {
         uint64_t first = (group * stride + pick(group, stride)) * run;
-        for (uint64_t i = first; i < first + run && i < from->count && to->count < limit; i++) {
+        for (uint64_t i = first; i < first + run && i < from->count && to->count < limit; i++)
             to->rays[to->count++] = from->rays[i];
-        }
     }
     rt_rayset_seal(to);
     return RT_OK;

@@ -11,7 +11,6 @@
 #include "core/base/clock.h"
 #include "core/base/elementary.h"
 #include "core/base/file.h"
-#include "core/base/memory.h"
 #include "core/base/parallel.h"
 
 #include <png.h>
@@ -484,24 +483,16 @@ RtStatus rt_image_from_frame(RtImage *image, const RtFrame *frame, RtError *erro
 }
 
 /* libpng's simplified interface, which uses no longjmp. */
-static RtStatus write_png(const RtImage *image, const char *path, RtError *error) {
+RtStatus rt_png_write(const RtFrame *frame, const char *path, RtError *error) {
+    RT_OWNED(RtImage, image, rt_image_clear);
     RtOutput output;
+    RT_TRY(rt_image_from_frame(&image, frame, error));
     RT_TRY(rt_output_open(&output, path, error));
-    png_image png = {.version = PNG_IMAGE_VERSION,
-                     .width = image->width,
-                     .height = image->height,
-                     .format = PNG_FORMAT_RGB};
-    if (!png_image_write_to_stdio(&png, output.file, 0, image->rgb, 0, NULL)) {
+    png_image png = {
+        .version = PNG_IMAGE_VERSION, .width = image.width, .height = image.height, .format = PNG_FORMAT_RGB};
+    if (!png_image_write_to_stdio(&png, output.file, 0, image.rgb, 0, NULL)) {
         rt_output_discard(&output);
         return rt_fail(error, RT_IO, "%s: writing the PNG failed: %s", path, png.message);
     }
     return rt_output_commit(&output, error);
-}
-
-RtStatus rt_png_write(const RtFrame *frame, const char *path, RtError *error) {
-    RtImage image;
-    RT_TRY(rt_image_from_frame(&image, frame, error));
-    RtStatus status = write_png(&image, path, error);
-    rt_image_clear(&image);
-    return status;
 }

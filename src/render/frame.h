@@ -12,7 +12,6 @@
 #define RT_RENDER_FRAME_H
 
 #include "accel/accel.h"
-#include "core/base/memory.h"
 #include "render/illumination.h"
 
 /* ---- tiles ---- */

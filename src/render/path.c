@@ -2,7 +2,6 @@
 #include "render/path.h"
 
 #include "accel/plugin.h"
-#include "core/base/memory.h"
 #include "render/illumination.h"
 
 #include <stdio.h>
@@ -42,7 +41,6 @@ static void find_span_of_ball(const RtRay *ray, RtPathRow *row) {
     row->leave = inside < 0 ? -(double)INFINITY : fmin((double)ray->tmax, nearest + half);
 }
 
-/* Marks the row of the object test that a hit belongs to. */
 static void note_hit(RtPath *path, const RtTraced *event) {
     for (uint32_t i = path->count; i-- > 0;) {
         RtPathRow *row = &path->rows[i];
@@ -129,7 +127,7 @@ RtStatus rt_path_available(const RtAccel *accel, const char *spec, RtError *erro
 }
 
 RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *error) {
-    RtQuery query;
+    RT_OWNED(RtQuery, query, rt_query_clear);
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
     *path = (RtPath){
         .ray = *ray, .accel = accel, .any = rt_ray_kind_is_any_hit((RtRayKind)ray->kind), .hit = RT_MISS};
@@ -145,7 +143,6 @@ RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *
         rt_trace_observer = NULL;
         status = recorder.status;
     }
-    rt_query_clear(&query);
     if (status == RT_OK) status = rt_accel_check(accel, error);
     if (status == RT_OK) status = compare(path, &tallies[ray->kind], rt_accel_is_remote(accel), error);
     if (status == RT_OK) find_nearest(path);
@@ -164,17 +161,13 @@ bool rt_path_row_answers(const RtPathRow *row) {
 }
 
 const char *rt_path_row_name(const RtPathRow *row) {
-    switch (row->kind) {
-    case RT_TRACED_STEP: return row->empty ? "step, empty" : row->leaf ? "step, leaf" : "step";
-    case RT_TRACED_EXTENT_TEST: return "extent test";
-    case RT_TRACED_OBJECT_TEST: return "object test";
-    case RT_TRACED_CSG_TEST: return "csg test";
-    case RT_TRACED_REPEAT_AVOIDED: return "repeat avoided";
-    case RT_TRACED_PASSED_ON: return "passed on";
-    case RT_TRACED_OBJECT_HIT:
-    case RT_TRACED_KIND_COUNT: break;
-    }
-    return "";
+    static const char *const names[RT_TRACED_KIND_COUNT] = {[RT_TRACED_EXTENT_TEST] = "extent test",
+                                                            [RT_TRACED_OBJECT_TEST] = "object test",
+                                                            [RT_TRACED_CSG_TEST] = "csg test",
+                                                            [RT_TRACED_REPEAT_AVOIDED] = "repeat avoided",
+                                                            [RT_TRACED_PASSED_ON] = "passed on"};
+    if (row->kind != RT_TRACED_STEP) return names[row->kind];
+    return row->empty ? "step, empty" : row->leaf ? "step, leaf" : "step";
 }
 
 uint32_t rt_path_run(const RtPath *path, uint32_t first) {
@@ -219,14 +212,12 @@ static RtStatus spawn(const RtAccel *accel, RtRayKind kind, uint32_t light, RtRa
 RtStatus rt_path_ray(const RtAccel *accel, RtRayKind kind, uint32_t column, uint32_t row, uint32_t light,
                      RtRay *ray, RtError *error) {
     RtView view;
-    RtQuery query;
+    RT_OWNED(RtQuery, query, rt_query_clear);
     RtHit hit;
     RT_TRY(rt_view_init(&view, &accel->scene->camera, accel->scene->sampling, error));
     *ray = rt_view_ray(&view, column, row);
     if (kind == RT_RAY_PRIMARY) return RT_OK;
     RT_TRY(rt_query_init(&query, accel, error));
     rt_nearest(&query, ray, 1, &hit, NULL);
-    RtStatus status = spawn(accel, kind, light, ray, rt_query_crossings(&query), hit, error);
-    rt_query_clear(&query);
-    return status;
+    return spawn(accel, kind, light, ray, rt_query_crossings(&query), hit, error);
 }

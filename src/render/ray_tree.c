@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "render/ray_tree.h"
 
-#include "core/base/memory.h"
 #include "core/base/words.h"
 
 #include <stdio.h>
@@ -92,19 +91,18 @@ static void finish(RtRayTree *tree, const RtScene *scene) {
 }
 
 static RtStatus finish_all(RtRayTree *trees, const RtAccel *accel, uint32_t count, RtError *error) {
-    RtQuery query;
+    RT_OWNED(RtQuery, query, rt_query_clear);
     RT_TRY(rt_query_init(&query, accel, error));
     for (uint32_t i = 0; i < count; i++) {
         find_occluders(&trees[i], &query);
         finish(&trees[i], accel->scene);
     }
-    rt_query_clear(&query);
     return rt_accel_check(accel, error);
 }
 
 RtStatus rt_ray_trees_trace(RtRayTree *trees, const RtAccel *accel, const RtSample *samples, uint32_t count,
                             uint32_t depth, RtError *error) {
-    RtFrame frame;
+    RT_OWNED(RtFrame, frame, rt_frame_clear);
     Recorder recorder = {.status = RT_OK, .error = error};
     for (uint32_t i = 0; i < count; i++) {
         trees[i] = (RtRayTree){.depth = depth};
@@ -113,7 +111,6 @@ RtStatus rt_ray_trees_trace(RtRayTree *trees, const RtAccel *accel, const RtSamp
     const RtFrameObserver observer = {rt_tile_of(samples[0]), record, &recorder};
     const RtFrameOptions options = {.depth = depth, .threads = 1, .observer = &observer};
     RtStatus status = rt_frame_trace(&frame, accel, &options, error);
-    rt_frame_clear(&frame);
     if (status == RT_OK) status = recorder.status;
     if (status == RT_OK) status = finish_all(trees, accel, count, error);
     for (uint32_t i = 0; i < count && status != RT_OK; i++) rt_ray_tree_clear(&trees[i]);

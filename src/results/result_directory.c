@@ -134,7 +134,8 @@ static RtStatus load_experiment(const json_t *manifest, const char *directory, b
                        "%s cannot be read here: start raytally in the folder in which %s was measured", file,
                        directory);
     }
-    RT_TRY(rt_experiment_load(experiment, file, json_is_true(json_object_get(manifest, "quick")), error));
+    RT_TRY(
+        rt_experiment_load(experiment, file, json_is_true(json_object_get(manifest, "quick")), NULL, error));
     const json_int_t run = json_integer_value(json_object_get(manifest, "coherent_run"));
     if (run > 0) experiment->coherent_run = (uint64_t)run; /* its default was another in older versions */
     if (rt_experiment_has_hash(experiment, hash)) return RT_OK;
@@ -201,7 +202,8 @@ RtStatus rt_results_load(const char *directory, RtExperiment *experiment, RtResu
                        "%s is not the result directory of an experiment: it has no experiment.yaml",
                        directory);
     }
-    RtStatus status = rt_experiment_load_from_manifest(experiment, path, manifest, error);
+    RtStatus status = rt_experiment_load(experiment, path, json_is_true(json_object_get(manifest, "quick")),
+                                         manifest, error);
     json_decref(manifest);
     RT_TRY(status);
     RT_TRY(rt_results_init(results, experiment, error));

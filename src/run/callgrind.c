@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "run/callgrind.h"
 
-#include "core/base/file.h"
-#include "core/base/memory.h"
 #include "core/base/words.h"
-#include "core/text/json.h"
 #include "measure/measure.h"
 #include "results/result_tables.h"
 #include "run/worker.h"
@@ -69,21 +66,17 @@ RtStatus rt_callgrind_save_rays(void *context, uint32_t workload, const RtRaySet
     const RtCallgrind *callgrind = context;
     RT_ARENA(arena);
     char path[RT_MAX_PATH];
-    RtRaySet some;
+    RT_OWNED(RtRaySet, some, rt_rayset_clear);
     RtOutput output;
     RT_TRY(rays_path(callgrind, workload, set->kind, path, error));
     RT_TRY(rt_rayset_limit(set, callgrind->most, RUN, &some, error));
     RtHit *hits = rt_arena_alloc(&arena, some.count, sizeof(RtHit));
-    RtStatus status = rt_arena_check(&arena, "answers", error);
-    if (status == RT_OK) status = rt_measure_answers(exact, &some, 1, hits, error);
-    if (status == RT_OK) status = rt_output_open(&output, path, error);
-    if (status == RT_OK) {
-        fwrite(some.rays, sizeof(RtRay), some.count, output.file);
-        fwrite(hits, sizeof(RtHit), some.count, output.file);
-        status = rt_output_commit(&output, error);
-    }
-    rt_rayset_clear(&some);
-    return status;
+    RT_TRY(rt_arena_check(&arena, "answers", error));
+    RT_TRY(rt_measure_answers(exact, &some, 1, hits, error));
+    RT_TRY(rt_output_open(&output, path, error));
+    fwrite(some.rays, sizeof(RtRay), some.count, output.file);
+    fwrite(hits, sizeof(RtHit), some.count, output.file);
+    return rt_output_commit(&output, error);
 }
 
 /* ---- counting ---- */
@@ -169,7 +162,7 @@ static RtStatus count_cell(Session *session, const RtResults *results, const RtC
     const RtBuildResult *build = rt_build_at(results, at->workload, at->candidate);
     RtInstructions cell = {.workload = at->workload, .candidate = at->candidate, .kind = at->kind};
     char path[RT_MAX_PATH];
-    json_t *answer;
+    json_auto_t *answer = NULL;
     RT_TRY(rays_path(callgrind, at->workload, at->kind, path, error));
     if (!rt_candidate_runs(e, at->candidate, at->workload) || !rt_file_exists(path)) return RT_OK;
     if (*build->left_out || *at->cell->left_out) {
@@ -183,9 +176,7 @@ static RtStatus count_cell(Session *session, const RtResults *results, const RtC
                                     at->workload, rt_ray_kind_name(at->kind), candidate->label, path);
     if (status != RT_OK && rt_spec_is_remote(&candidate->parsed)) return go_on_without(session, cell, error);
     if (status != RT_OK) return rt_fail(error, status, "%s", failure.message);
-    status = take_answer(callgrind, answer, cell, &session->passes, error);
-    json_decref(answer);
-    return status;
+    return take_answer(callgrind, answer, cell, &session->passes, error);
 }
 
 RtStatus rt_callgrind_run(RtCallgrind *callgrind, const char *program, const RtResults *results,

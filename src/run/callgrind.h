@@ -11,7 +11,6 @@
 #ifndef RT_RUN_CALLGRIND_H
 #define RT_RUN_CALLGRIND_H
 
-#include "core/text/table.h"
 #include "run/workload.h"
 
 #define RT_CALLGRIND_RAYS 4096 /* of a kind and scene, by default */

@@ -4,20 +4,14 @@
  * merged by a run that has nothing left to measure, once the directory has their journal. */
 #include "run/run.h"
 
-#include "core/base/file.h"
 #include "core/base/parallel.h"
 #include "core/base/words.h"
-#include "core/text/json.h"
 #include "experiment/plugins_used.h"
-#include "measure/machine.h"
-#include "render/frame.h"
-#include "results/journal.h"
 #include "results/result_directory.h"
 
 #include <inttypes.h>
 #include <string.h>
 
-/* All that the experiment has. */
 static RtStatus write_csvs(const RtResults *results, const char *directory, RtError *error) {
     for (RtResultFile file = 0; file < RT_RESULT_FILE_COUNT; file++) {
         const RtFileSort sort = rt_result_file_sort(results->experiment, file);
@@ -70,18 +64,15 @@ static uint32_t number_of(const Merge *merge, uint32_t i, const char *key) {
 static RtStatus load_journals(Merge *merge, RtError *error) {
     for (uint32_t i = 0; i < merge->count; i++) {
         char path[RT_MAX_PATH];
-        json_t *manifest;
+        json_auto_t *manifest = NULL;
         RT_TRY(rt_path_join(merge->directories[i], RT_RUN_JOURNAL, path, error));
-        if (!rt_file_exists(path)) {
+        if (!rt_file_exists(path))
             return rt_fail(error, RT_BAD_INPUT, "%s is not the directory of a run: it has no %s",
                            merge->directories[i], RT_RUN_JOURNAL);
-        }
-        if (rt_manifest_read(merge->directories[i], &manifest, NULL) != RT_OK) {
+        if (rt_manifest_read(merge->directories[i], &manifest, NULL) != RT_OK)
             return rt_fail(error, RT_BAD_INPUT,
                            "%s is not finished: finish it with raytally run ... --resume",
                            merge->directories[i]);
-        }
-        json_decref(manifest);
         RT_TRY(rt_json_lines_load(path, &merge->journals[i], error));
         if (number_of(merge, i, "shards") > 0) continue;
         return rt_fail(error, RT_BAD_INPUT, "%s is not a shard: it was not run with --shard",
@@ -120,13 +111,12 @@ static RtStatus check_same_threads(const Merge *merge, int *threads, RtError *er
             const json_t *timed = json_object_get(json_array_get(merge->journals[i], line), "timed");
             int here = (int)json_integer_value(json_object_get(timed, "threads"));
             if (!timed || (first < merge->count && here == *threads)) continue;
-            if (first < merge->count) {
+            if (first < merge->count)
                 return rt_fail(error, RT_BAD_INPUT,
                                "%s was timed on %d thread%s, and %s on %d: their times are not comparable. "
                                "Run one of them again with the --threads of the other, and --force",
                                merge->directories[first], *threads, rt_plural((uint64_t)*threads),
                                merge->directories[i], here);
-            }
             first = i;
             *threads = here;
         }
@@ -136,19 +126,16 @@ static RtStatus check_same_threads(const Merge *merge, int *threads, RtError *er
 
 /* The shards must have used the plugins that are loaded here, which the manifest will name. */
 static RtStatus check_plugins(const Merge *merge, const RtExperiment *experiment, RtError *error) {
-    RtStatus status = RT_OK;
-    for (uint32_t i = 0; i < merge->count && status == RT_OK; i++) {
-        json_t *changed =
+    for (uint32_t i = 0; i < merge->count; i++) {
+        json_auto_t *changed =
             rt_plugins_changed_since(json_object_get(header_of(merge, i), "plugins"), experiment);
         const char *name = json_object_iter_key(json_object_iter(changed));
         char sentence[RT_MAX_PLUGIN_CHANGE];
-        if (name) {
-            rt_plugins_change_format(name, json_object_get(changed, name), "there", "here", sentence);
-            status = rt_fail(error, RT_BAD_INPUT, "%s: %s: load that one", merge->directories[i], sentence);
-        }
-        json_decref(changed);
+        if (!name) continue;
+        rt_plugins_change_format(name, json_object_get(changed, name), "there", "here", sentence);
+        return rt_fail(error, RT_BAD_INPUT, "%s: %s: load that one", merge->directories[i], sentence);
     }
-    return status;
+    return RT_OK;
 }
 
 static RtStatus check_whole(const Merge *merge, RtError *error) {
@@ -200,9 +187,8 @@ static RtStatus take_directory(Run *run, RtError *error) {
     RT_TRY(rt_lock_take(&run->lock, options->directory, error));
     RT_TRY(path_in(run, RT_RUN_JOURNAL, run->path, error));
     /* Loading a journal gives a better error than its existence. */
-    if (options->start != RT_START_ANEW && rt_file_exists(run->path)) {
+    if (options->start != RT_START_ANEW && rt_file_exists(run->path))
         RT_TRY(rt_journal_load(run->path, run->results, &options->workload.only, error));
-    }
     return rt_result_files_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
 }
 
@@ -278,13 +264,10 @@ static RtStatus copy_files(const Run *run, RtOutputs *copies, RtError *error) {
 
 /* Writes the copies, removes the previous results, and then renames the copies. */
 static RtStatus replace_previous(Run *run, RtError *error) {
-    RtOutputs copies = {0};
-    RtStatus status = copy_files(run, &copies, error);
-    if (status == RT_OK && !run->resumed)
-        status = rt_result_files_remove(run->options->directory, RT_RUN_JOURNAL, error);
-    if (status == RT_OK) status = rt_outputs_commit(&copies, error);
-    rt_outputs_clear(&copies);
-    return status;
+    RT_OWNED(RtOutputs, copies, rt_outputs_clear);
+    RT_TRY(copy_files(run, &copies, error));
+    if (!run->resumed) RT_TRY(rt_result_files_remove(run->options->directory, RT_RUN_JOURNAL, error));
+    return rt_outputs_commit(&copies, error);
 }
 
 static RtStatus prepare_directory(Run *run, RtError *error) {
@@ -341,24 +324,20 @@ static void on_notice(void *context, const char *message) {
     rt_notify(&run->options->workload.observer, "%s", message);
 }
 
-/* The picture of a workload's scene, unless it exists. */
 static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
     const RtWorkloadResult *workload = &run->results->workloads[t];
     const int threads = run->options->workload.threads;
     RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
     char path[RT_MAX_PATH];
-    RtAccel *accel;
-    RtFrame frame = {0};
+    RT_OWNED(RtAccel *, accel, rt_accel_destroy_at);
+    RT_OWNED(RtFrame, frame, rt_frame_clear);
     const RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
     RT_TRY(rt_results_image_path(run->options->directory, run->experiment, t, path, error));
     if (workload->skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
     RT_TRY(rt_scene_sample(scene, workload->width, workload->height, 2, false, error));
     RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, &accel, error));
-    RtStatus status = rt_frame_trace(&frame, accel, &options, error);
-    if (status == RT_OK) status = rt_png_write(&frame, path, error);
-    rt_frame_clear(&frame);
-    rt_accel_destroy(accel);
-    return status;
+    RT_TRY(rt_frame_trace(&frame, accel, &options, error));
+    return rt_png_write(&frame, path, error);
 }
 
 /* Frees the scene of workload `t`, unless a later workload uses it. */
@@ -370,7 +349,6 @@ static void close_scene(Run *run, uint32_t t) {
     rt_scene_clear(&run->scenes[slot]);
 }
 
-/* Says what was done if nothing was measured. */
 static void tell_end(const Run *run) {
     const RtRunObserver *observer = &run->options->workload.observer;
     uint32_t scenes, shards = run->merge ? run->merge->count : 0;

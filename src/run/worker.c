@@ -4,10 +4,6 @@
 #include "accel/columns.h"
 #include "accel/isa.h"
 #include "accel/plugin.h"
-#include "core/base/file.h"
-#include "core/base/memory.h"
-#include "core/text/json.h"
-#include "measure/machine.h"
 #include "measure/measure.h"
 #include "run/workload_state.h"
 
@@ -186,14 +182,13 @@ static RtStatus serve_kind(void *context, RtWorkloadState *workload, RtRayKind k
 
 static RtStatus serve_times(Server *server, const RtWorkloadOptions *options, RtError *error) {
     RtWorkloadOptions how = *options;
-    RtResults results;
+    RT_OWNED(RtResults, results, rt_results_clear);
     how.timer = serve_kind;
     how.timer_context = server;
     say(server, json_pack("{s:i, s:s}", "worker", 1, "build", rt_build_identity()));
     RtStatus status = rt_results_init(&results, server->experiment, error);
     if (status == RT_OK) status = rt_workloads_run(&results, &how, error);
     if (status == RT_OK) say(server, json_pack("{s:b}", "done", 1));
-    rt_results_clear(&results);
     return server->closed ? RT_OK : status;
 }
 

@@ -133,11 +133,10 @@ static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
         now.ray_fingerprints[k] = workload->sets[k].fingerprint;
         same &= now.ray_fingerprints[k] == result->ray_fingerprints[k];
     }
-    if (result->known && !same) {
+    if (result->known && !same)
         return rt_fail(error, RT_BAD_INPUT,
                        "'%s' has changed since this run was interrupted: start over with --force",
                        workload->experiment->workloads[workload->index].label);
-    }
     if (result->known) return RT_OK;
     *result = now;
     return rt_workload_tell(workload, RT_EVENT_WORKLOAD, 0, RT_RAY_PRIMARY, error);
@@ -189,11 +188,10 @@ typedef struct Rendering {
 
 static RtStatus render_once(void *context, RtError *error) {
     Rendering *rendering = context;
-    RtFrame frame;
+    RT_OWNED(RtFrame, frame, rt_frame_clear);
     RT_TRY(rt_frame_trace(&frame, rendering->accel, &rendering->options, error));
     if (rendering->runs > 0) rendering->shares[rendering->runs - 1] = frame.share;
     rendering->runs++;
-    rt_frame_clear(&frame);
     return RT_OK;
 }
 
@@ -276,9 +274,8 @@ static RtStatus measure(RtWorkloadState *workload, RtError *error) {
     RT_TRY(prepare(workload, error));
     notify_empty(workload);
     RT_TRY(rt_workload_build(workload, error));
-    for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
+    for (uint32_t k = 0; k < workload->experiment->kind_count; k++)
         RT_TRY(measure_kind(workload, workload->experiment->kinds[k], error));
-    }
     return render(workload, error);
 }
 
@@ -310,12 +307,10 @@ RtStatus rt_workload_measure(RtResults *results, uint32_t index, const RtWorkloa
 
 RtStatus rt_workloads_run(RtResults *results, const RtWorkloadOptions *options, RtError *error) {
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
-        RtScene scene;
+        RT_OWNED(RtScene, scene, rt_scene_clear);
         if (rt_workload_is_done(results, t, options)) continue;
         RT_TRY(rt_workload_open(results, t, options, &scene, error));
-        RtStatus status = rt_workload_measure(results, t, options, &scene, error);
-        rt_scene_clear(&scene);
-        RT_TRY(status);
+        RT_TRY(rt_workload_measure(results, t, options, &scene, error));
     }
     return RT_OK;
 }

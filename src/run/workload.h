@@ -4,8 +4,6 @@
 #ifndef RT_RUN_WORKLOAD_H
 #define RT_RUN_WORKLOAD_H
 
-#include "experiment/experiment.h"
-#include "rays/rayset.h"
 #include "results/journal.h"
 
 /* Seconds for each build that the experiment asks for: a structure is not built again once all its builds

@@ -36,13 +36,12 @@ static void thin_share(const RtWorkloadState *workload, const RtRaySet *set, uin
 /* Draws the probe from the whole set, in short runs, to index `first`. The first rays of a set would be those
  * at the top of the image, which are usually cheaper than others. */
 static RtStatus draw_probe(RtWorkloadState *workload, const RtRaySet *set, uint64_t first, RtError *error) {
-    RtRaySet drawn;
+    RT_OWNED(RtRaySet, drawn, rt_rayset_clear);
     RT_TRY(rt_rayset_limit(set, PROBE_RAYS, PROBE_RAYS, &drawn, error));
     memcpy(set->rays + first, drawn.rays, drawn.count * sizeof(RtRay));
     workload->probe = (RtWorkloadShare){.set = *set, .expected = workload->answers + first};
     workload->probe.set.rays = set->rays + first;
     workload->probe.set.count = drawn.count;
-    rt_rayset_clear(&drawn);
     return rt_measure_answers(workload->reference, &workload->probe.set, workload->options->threads,
                               workload->answers + first, error);
 }
@@ -158,26 +157,21 @@ static uint64_t value_of(const RtTally *tally, RtRayQuantity quantity) {
 
 static RtStatus distribute_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,
                                 RtError *error) {
-    RtRows rows;
+    RT_OWNED(RtRows, rows, rt_rows_clear);
+    RtDistribution made[RT_RAY_QUANTITY_COUNT];
     if (cell->distributions) return RT_OK;
-    RtDistribution *made = rt_alloc(RT_RAY_QUANTITY_COUNT, sizeof(RtDistribution));
-    if (!made) return rt_fail_memory(error, "distributions", RT_RAY_QUANTITY_COUNT * sizeof(RtDistribution));
-    RtStatus status = rt_measure_rows(workload->accels[c], &workload->shares[c].set,
-                                      workload->options->threads, &rows, error);
-    for (int q = 0; q < RT_RAY_QUANTITY_COUNT && status == RT_OK; q++) {
-        RtOccurrences values = {0};
-        for (uint64_t i = 0; i < rows.count && status == RT_OK; i++)
-            status = rt_occurrences_add(&values, value_of(&rows.tallies[i], (RtRayQuantity)q), error);
+    RT_TRY(rt_measure_rows(workload->accels[c], &workload->shares[c].set, workload->options->threads, &rows,
+                           error));
+    for (int q = 0; q < RT_RAY_QUANTITY_COUNT; q++) {
+        RT_OWNED(RtOccurrences, values, rt_occurrences_clear);
+        for (uint64_t i = 0; i < rows.count; i++)
+            RT_TRY(rt_occurrences_add(&values, value_of(&rows.tallies[i], (RtRayQuantity)q), error));
         made[q] = rt_distribution_of(&values);
-        rt_occurrences_clear(&values);
     }
-    rt_rows_clear(&rows);
-    if (status == RT_OK) {
-        cell->distributions = made;
-        return rt_workload_tell(workload, RT_EVENT_DISTRIBUTION, c, kind, error);
-    }
-    rt_free(made);
-    return status;
+    cell->distributions = rt_alloc(RT_RAY_QUANTITY_COUNT, sizeof(RtDistribution));
+    if (!cell->distributions) return rt_fail_memory(error, "distributions", sizeof made);
+    memcpy(cell->distributions, made, sizeof made);
+    return rt_workload_tell(workload, RT_EVENT_DISTRIBUTION, c, kind, error);
 }
 
 /* ---- the hit and the cost of each ray ---- */
@@ -213,13 +207,10 @@ static RtStatus save_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind,
                           RtError *error) {
     (void)cell;
     const RtWorkloadOptions *options = workload->options;
-    RtRows rows;
-    RtStatus status =
-        rt_measure_rows(workload->accels[c], &workload->shares[c].set, options->threads, &rows, error);
-    if (status == RT_OK) status = save_rows(workload, c, kind, &rows, rt_hits_put, options->hits, error);
-    if (status == RT_OK) status = save_rows(workload, c, kind, &rows, rt_counts_put, options->counts, error);
-    rt_rows_clear(&rows);
-    return status;
+    RT_OWNED(RtRows, rows, rt_rows_clear);
+    RT_TRY(rt_measure_rows(workload->accels[c], &workload->shares[c].set, options->threads, &rows, error));
+    RT_TRY(save_rows(workload, c, kind, &rows, rt_hits_put, options->hits, error));
+    return save_rows(workload, c, kind, &rows, rt_counts_put, options->counts, error);
 }
 
 /* ---- all steps ---- */

@@ -9,9 +9,6 @@
  * timing builds them anew for its rounds, each behind a block of random size. */
 #include "run/workload_state.h"
 
-#include "core/base/memory.h"
-#include "core/base/random.h"
-
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -88,8 +85,7 @@ static RtStatus distribute_leaves(const RtAccel *accel, RtBuildResult *result, R
     if (!base->ops->shows_lists) return RT_OK;
     base->ops->each_box(base, (RtBoxViewer){take_leaf, &leaves});
     RtStatus status = leaves.status;
-    if (status == RT_OK && !result->leaves)
-        result->leaves = rt_alloc(RT_LEAF_QUANTITY_COUNT, sizeof(RtDistribution));
+    if (status == RT_OK) result->leaves = rt_alloc(RT_LEAF_QUANTITY_COUNT, sizeof(RtDistribution));
     if (status == RT_OK && !result->leaves)
         status = rt_fail_memory(error, "distributions", RT_LEAF_QUANTITY_COUNT * sizeof(RtDistribution));
     for (int q = 0; q < RT_LEAF_QUANTITY_COUNT; q++) {
@@ -101,7 +97,6 @@ static RtStatus distribute_leaves(const RtAccel *accel, RtBuildResult *result, R
 
 /* ---- builds ---- */
 
-/* The builds of one candidate. */
 typedef struct Builds {
     RtWorkloadState *workload;
     uint32_t candidate;

@@ -3,7 +3,6 @@
 #ifndef RT_RUN_WORKLOAD_STATE_H
 #define RT_RUN_WORKLOAD_STATE_H
 
-#include "core/base/random.h"
 #include "measure/measure.h"
 #include "run/workload.h"
 

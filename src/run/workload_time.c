@@ -71,9 +71,8 @@ static RtStatus timing_run_init(TimingRun *run, RtWorkloadState *workload, RtRay
         run->baseline_entry[c] = run->place[run->baselines[0]];
         if (!workload->accels[c] || rt_workload_setup(workload, c)->ray_stride == 1) continue;
         run->baseline_entry[c] = run->count;
-        for (uint32_t i = 0; i < run->baseline_count; i++) {
+        for (uint32_t i = 0; i < run->baseline_count; i++)
             enter(run, run->baselines[i], &workload->shares[c].set);
-        }
     }
     return RT_OK;
 }
@@ -180,7 +179,6 @@ static bool is_enough(void *context, uint32_t rounds) {
     return rt_wall_seconds() - run->start > options->patience || widest_of(run, &candidate) <= options->until;
 }
 
-/* Reports intervals that did not become narrow enough. */
 static void report_width(const TimingRun *run) {
     const RtWorkloadState *workload = run->workload;
     uint32_t candidate;
@@ -212,7 +210,6 @@ static void compare_times(const TimingRun *run, uint32_t c, RtCell *cell) {
     cell->baseline = run->baselines[best];
 }
 
-/* Copies the times to the cells. */
 static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const TimingRun *run, RtError *error) {
     const RtMachine here = rt_machine_here();
     uint32_t rounds = run->rounds, machine = rt_results_machine(workload->results, &here);

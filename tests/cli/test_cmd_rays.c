@@ -92,10 +92,9 @@ RT_TEST(rows_of_counts_sum_to_the_counts_and_rows_of_hits_to_the_hits) {
         rt_tally_add(&sum, &row);
         assert_int_equal(row.rays, 1);
     }
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++)
         assert_int_equal(rt_tally_get(&sum, i),
                          json_integer_value(json_object_get(counts, rt_tally_name(i))));
-    }
     uint64_t hit = 0, all = 0;
     for (at = numbers_of(&hits); at < hits.data + hits.size; at += sizeof(float) + sizeof(int64_t)) {
         float t;

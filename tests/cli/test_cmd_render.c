@@ -37,10 +37,9 @@ static json_t *stats_of(const char *arguments) {
 
 static void assert_close(const char *scene, const char *what, json_int_t got, double published,
                          double percent) {
-    if (fabs((double)got - published) > percent / 100 * published) {
+    if (fabs((double)got - published) > percent / 100 * published)
         fail_msg("%s: %lld %s rays are not within %g %% of %.0f", scene, (long long)got, what, percent,
                  published);
-    }
 }
 
 /* Rays by kind at 512 x 512 pixels' corners and depth 5, as the README of SPD (Haines) gives them. Havran

@@ -36,9 +36,8 @@ PLACE_TEST(each_of_several_experiments_gets_its_directory_and_all_a_summary_and_
     assert_runs(place, "run a.yaml b.yaml --threads 1");
     assert_true(exists(place, "results/a/report.html") && exists(place, "results/b/report.html"));
     assert_true(exists(place, "results/index.html") && exists(place, "results/index.md"));
-    assert_in_file(place, "output", "== b, 2 of 2\n");
-    assert_in_file(place, "output", "\na                                finished ");
-    assert_in_file(place, "output", "\nb                                finished ");
+    assert_in_file(place, "output", "== b, 2 of 2\n", "\na                                finished ",
+                   "\nb                                finished ");
     assert_runs(place, "run a.yaml c.yaml --threads 1 --out other");
     assert_true(exists(place, "other/a/report.html") && exists(place, "other/c/report.html"));
     assert_equal_files(place, "results/a/counts.csv", "other/a/counts.csv");
@@ -69,9 +68,9 @@ PLACE_TEST(one_that_fails_does_not_stop_the_others_and_the_worst_exit_code_count
     change(place, "b.yaml", "bvh < 1000000", "bvh < 1");
     assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --strict", 2,
                 "2 of 3 experiments failed, the first: a");
-    assert_in_file(place, "output", "a                                failed, exit code 2");
-    assert_in_file(place, "output", "b                                failed, exit code 1");
-    assert_in_file(place, "output", "c                                finished");
+    assert_in_file(place, "output", "a                                failed, exit code 2",
+                   "b                                failed, exit code 1",
+                   "c                                finished");
     assert_true(exists(place, "results/c/report.html"));
     assert_ends(place, "run b.yaml c.yaml --threads 1 --strict --resume", 1,
                 "1 of 2 experiments failed, the first: b");

@@ -2,9 +2,6 @@
 /* raytally trace and explore, as a user runs them. */
 #include "command_testing.h"
 
-#include "core/base/file.h"
-#include "core/base/tally.h"
-
 #include <jansson.h>
 
 #define OUT RT_BINARY_DIR "/test_cmd_trace"
@@ -198,9 +195,8 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls --pixel 0,0 --depth 2 --rays shadow", "leave out --rays"},
         {"balls --pixel 0,0 --depth 2 --light 1", "leave out --rays"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         assert_said(trace(cases[i].arguments), 2, OUT ".err", cases[i].says);
-    }
 }
 
 /* tests/check_pages.sh tests what the page does, in a browser. */

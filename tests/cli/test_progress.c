@@ -2,7 +2,7 @@
 /* What a long command says while it runs, on a terminal and where there is none. */
 #include "experiment_testing.h"
 
-#include "cli/progress.h"
+#include "cli/cli.h"
 
 #include <fcntl.h>
 #include <stdatomic.h>
@@ -45,25 +45,19 @@ static char *said(const Place *place, RtEventKind what, bool terminal, double ev
         RtEvent event = {.what = what, .candidate = 1};
         assert_int_equal(observer.event(observer.context, &results, &event, NULL), RT_OK);
     }
-    rt_progress_end(&progress);
+    rt_progress_clear();
     dup2(stderr_was, STDERR_FILENO);
     close(stderr_was);
     close(file);
     return read_in(place, "said");
 }
 
-static int count(const char *text, const char *part) {
-    int n = 0;
-    for (; (text = strstr(text, part)) != NULL; text++) n++;
-    return n;
-}
-
 PLACE_TEST(without_a_terminal_a_line_comes_as_often_as_it_may_and_no_more) {
     char *text = said(place, RT_EVENT_BUILD, false, 0.2, 900);
-    int lines = count(text, "\n");
+    int lines = count_of(text, "\n");
     assert_int_equal(lines, 4);
-    assert_int_equal(count(text, "raytally: 0 of 2 cells, balls:size=1 grid: built\n"), lines);
-    assert_int_equal(count(text, "\r"), 0);
+    assert_int_equal(count_of(text, "raytally: 0 of 2 cells, balls:size=1 grid: built\n"), lines);
+    assert_int_equal(count_of(text, "\r"), 0);
     rt_free(text);
     text = said(place, RT_EVENT_BUILD, false, 60, 30000);
     assert_string_equal(text, "");
@@ -74,8 +68,8 @@ PLACE_TEST(on_a_terminal_one_line_is_drawn_in_place_and_taken_away) {
     OWNED_MEMORY char *text = said(place, RT_EVENT_BUILD, true, 1, 100);
     const char *const away = "\r\033[K";
     size_t length = strlen(text);
-    assert_int_equal(count(text, "\n"), 0);
-    assert_int_equal(count(text, "\r\033[K[0/2] balls:size=1 grid: built"), 100);
+    assert_int_equal(count_of(text, "\n"), 0);
+    assert_int_equal(count_of(text, "\r\033[K[0/2] balls:size=1 grid: built"), 100);
     assert_true(length > strlen(away));
     assert_string_equal(text + length - strlen(away), away);
 }

@@ -6,7 +6,6 @@
 #include "testing.h"
 
 #include "claims/claims.h"
-#include "core/base/memory.h"
 #include "results/result_tables.h"
 
 /* Scenes random:n=10, 100, 1000 and balls; accelerators bvh (the baseline), grid:density=1, 2, 4. */
@@ -72,5 +71,10 @@ static inline void expect(RtClaimVerdict verdict, const char *claim, const char 
     if (result.verdict == verdict && strstr(result.figures, figures)) return;
     fail_msg("%s: %s, %s", claim, rt_claim_verdict_name(result.verdict), result.figures);
 }
+
+#define holds(claim, figures)        expect(RT_CLAIM_HOLDS, claim, figures)
+#define is_false(claim, figures)     expect(RT_CLAIM_FALSE, claim, figures)
+#define is_undecided(claim, figures) expect(RT_CLAIM_UNDECIDED, claim, figures)
+#define shows(claim, figures)        expect(RT_CLAIM_FIGURE, claim, figures)
 
 #endif

@@ -2,7 +2,6 @@
 /* bench --callgrind: instructions per ray by valgrind, in a worker that is this program. */
 #include "experiment_testing.h"
 
-#include "core/text/json.h"
 #include "measure/measure.h"
 
 #include <sys/stat.h>
@@ -59,10 +58,9 @@ RT_TEST_VALGRIND(instructions_are_the_same_figure_twice_whatever_the_environment
 static void write_alike(const Place *place, const char *name, uint64_t count) {
     OWNED(rt_rayset_clear) RtRaySet set;
     assert_ok(rt_rayset_init(&set, RT_RAY_DIFFUSE, count, error));
-    for (uint64_t i = 0; i < count; i++) {
+    for (uint64_t i = 0; i < count; i++)
         set.rays[i] =
             (RtRay){.org = {{3, 2, 1}}, .dir = {{-3, -2, -1}}, .tmax = INFINITY, .kind = RT_RAY_DIFFUSE};
-    }
     assert_ok(rt_rays_save(&set, path_in(place, name).text, error));
 }
 
@@ -160,8 +158,7 @@ PLACE_TEST(without_valgrind_there_is_a_message_that_says_how_to_get_it) {
              place->folder, RT_PROGRAM);
     int code = WEXITSTATUS(system(command));
     assert_int_equal(code, 2);
-    assert_in_file(place, "message", "valgrind is not installed");
-    assert_in_file(place, "message", "apt install valgrind");
+    assert_in_file(place, "message", "valgrind is not installed", "apt install valgrind");
     OWNED_MEMORY char *output = read_in(place, "output");
     assert_string_equal(output, "");
 }

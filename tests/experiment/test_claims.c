@@ -4,52 +4,50 @@
 
 RT_TEST(a_claim_about_counts_is_exact_and_holds_for_every_cell_or_not_at_all) {
     set_all();
-    expect(RT_CLAIM_HOLDS, "object_tests of bvh < 2.31", "2.30 (bvh on balls, primary rays)");
-    expect(RT_CLAIM_FALSE, "object_tests of bvh < 2.3", "2.30 (bvh on balls, primary rays)");
-    expect(RT_CLAIM_HOLDS, "object_tests of bvh <= 2.3", "");
-    expect(RT_CLAIM_HOLDS, "object_tests of bvh on random < 2.3", "2.20 (bvh on random:n=100");
-    expect(RT_CLAIM_FALSE, "object_tests of grid for shadow rays > 5", "3.30 (grid:density=4");
-    expect(RT_CLAIM_HOLDS, "object_tests of grid at density=1 > 9", "10");
-    expect(RT_CLAIM_HOLDS, "object_tests of bvh at n=1e3 >= 2.2",
-           "2.20 (bvh on random:n=1000, primary rays)");
-    expect(RT_CLAIM_HOLDS, "object_tests of grid at smallest density >= 10", "10");
-    expect(RT_CLAIM_HOLDS, "ratio of object_tests of grid:density=1 to bvh at smallest n >= 5", "5.00");
+    holds("object_tests of bvh < 2.31", "2.30 (bvh on balls, primary rays)");
+    is_false("object_tests of bvh < 2.3", "2.30 (bvh on balls, primary rays)");
+    holds("object_tests of bvh <= 2.3", "");
+    holds("object_tests of bvh on random < 2.3", "2.20 (bvh on random:n=100");
+    is_false("object_tests of grid for shadow rays > 5", "3.30 (grid:density=4");
+    holds("object_tests of grid at density=1 > 9", "10");
+    holds("object_tests of bvh at n=1e3 >= 2.2", "2.20 (bvh on random:n=1000, primary rays)");
+    holds("object_tests of grid at smallest density >= 10", "10");
+    holds("ratio of object_tests of grid:density=1 to bvh at smallest n >= 5", "5.00");
 }
 
 RT_TEST(a_claim_about_times_is_undecided_where_an_interval_straddles) {
     set_all();
-    expect(RT_CLAIM_HOLDS, "time of bvh on random:n=10 < 105", "102 [100, 104] (bvh");
-    expect(RT_CLAIM_UNDECIDED, "time of bvh on random:n=10 < 103", "102 [100, 104]");
-    expect(RT_CLAIM_FALSE, "time of bvh on random:n=10 < 100", "102 [100, 104]");
-    expect(RT_CLAIM_UNDECIDED, "time of bvh on random:n=10 >= 103", "");
-    expect(RT_CLAIM_FALSE, "time of bvh < 103", "on balls");
+    holds("time of bvh on random:n=10 < 105", "102 [100, 104] (bvh");
+    is_undecided("time of bvh on random:n=10 < 103", "102 [100, 104]");
+    is_false("time of bvh on random:n=10 < 100", "102 [100, 104]");
+    is_undecided("time of bvh on random:n=10 >= 103", "");
+    is_false("time of bvh < 103", "on balls");
 }
 
 /* 100 / 215 to 104 / 200. Paired on one kind, it is what the rounds gave. */
 RT_TEST(a_ratio_of_times_is_of_ends_or_paired) {
     set_all();
-    expect(RT_CLAIM_HOLDS, "ratio of time of bvh to grid:density=1 on random:n=10 > 0.46",
-           "0.49 [0.47, 0.52]");
-    expect(RT_CLAIM_UNDECIDED, "ratio of time of bvh to grid:density=1 on random:n=10 > 0.49", "");
+    holds("ratio of time of bvh to grid:density=1 on random:n=10 > 0.46", "0.49 [0.47, 0.52]");
+    is_undecided("ratio of time of bvh to grid:density=1 on random:n=10 > 0.49", "");
     rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY)->ratio = (RtEstimate){0.5, 0.49, 0.51, 0.4};
-    expect(RT_CLAIM_HOLDS, "ratio of time of bvh to grid:density=1 on random:n=10 for primary rays > 0.485",
-           "0.50 [0.49, 0.51]");
-    expect(RT_CLAIM_HOLDS, "ratio of time of grid:density=1 to bvh on random:n=10 for primary rays > 1.95",
-           "2.00 [1.96, 2.04]");
+    holds("ratio of time of bvh to grid:density=1 on random:n=10 for primary rays > 0.485",
+          "0.50 [0.49, 0.51]");
+    holds("ratio of time of grid:density=1 to bvh on random:n=10 for primary rays > 1.95",
+          "2.00 [1.96, 2.04]");
 }
 
 RT_TEST(a_trend_is_from_each_value_to_the_next) {
     set_all();
-    expect(RT_CLAIM_HOLDS, "object_tests of grid falls with density", "10.0 at density=1, 3.30 at density=4");
-    expect(RT_CLAIM_FALSE, "object_tests of grid rises with density", "10.0 at density=1, 5.00 at density=2");
-    expect(RT_CLAIM_HOLDS, "object_tests of bvh rises with n", "2.00 at n=10, 2.20 at n=1000");
-    expect(RT_CLAIM_FALSE, "object_tests of grid falls with n", "");
-    expect(RT_CLAIM_HOLDS, "object_tests of grid never falls with n", "");
-    expect(RT_CLAIM_HOLDS, "time of bvh rises with n", "102 [100, 104] at n=10, 408 [400, 416] at n=1000");
-    expect(RT_CLAIM_UNDECIDED, "time of grid falls with density", "");
+    holds("object_tests of grid falls with density", "10.0 at density=1, 3.30 at density=4");
+    is_false("object_tests of grid rises with density", "10.0 at density=1, 5.00 at density=2");
+    holds("object_tests of bvh rises with n", "2.00 at n=10, 2.20 at n=1000");
+    is_false("object_tests of grid falls with n", "");
+    holds("object_tests of grid never falls with n", "");
+    holds("time of bvh rises with n", "102 [100, 104] at n=10, 408 [400, 416] at n=1000");
+    is_undecided("time of grid falls with density", "");
     set(1, 2, 100, 200, 210);
-    expect(RT_CLAIM_FALSE, "object_tests of grid falls with density", "10.0 at density=1, 10.0 at density=2");
-    expect(RT_CLAIM_HOLDS, "object_tests of grid never rises with density", "");
+    is_false("object_tests of grid falls with density", "10.0 at density=1, 10.0 at density=2");
+    holds("object_tests of grid never rises with density", "");
 }
 
 RT_TEST(what_was_not_measured_decides_nothing) {
@@ -57,15 +55,15 @@ RT_TEST(what_was_not_measured_decides_nothing) {
     *rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY) = *rt_cell_at(&results, 0, 0, RT_RAY_SHADOW) = (RtCell){0};
     expect(RT_CLAIM_UNMEASURED, "object_tests of bvh on random:n=10 < 5", "nothing that this claim is about");
     expect(RT_CLAIM_UNMEASURED, "ratio of time of grid:density=1 to bvh on random:n=10 > 9", "");
-    expect(RT_CLAIM_UNDECIDED, "object_tests of bvh < 5", "2 of 8 values are unknown");
-    expect(RT_CLAIM_FALSE, "object_tests of bvh > 5", "2 of 8 values are unknown");
+    is_undecided("object_tests of bvh < 5", "2 of 8 values are unknown");
+    is_false("object_tests of bvh > 5", "2 of 8 values are unknown");
 }
 
 RT_TEST(a_claim_about_build_times_is_undecided_within_their_interval) {
     *rt_build_at(&results, 0, 0) = (RtBuildResult){.known = true, .builds = 6, .seconds = {3, 2, 5, 2}};
-    expect(RT_CLAIM_HOLDS, "build_time of bvh on random:n=10 < 5.5", "3 [2, 5]");
-    expect(RT_CLAIM_UNDECIDED, "build_time of bvh on random:n=10 < 4", "3 [2, 5]");
-    expect(RT_CLAIM_FALSE, "build_time of bvh on random:n=10 < 1", "3 [2, 5]");
+    holds("build_time of bvh on random:n=10 < 5.5", "3 [2, 5]");
+    is_undecided("build_time of bvh on random:n=10 < 4", "3 [2, 5]");
+    is_false("build_time of bvh on random:n=10 < 1", "3 [2, 5]");
 }
 
 /* grid:density=1 needs 2 tests a ray of the one kind and 50 of the other, bvh 5 and 5. Without the dear kind
@@ -80,14 +78,13 @@ RT_TEST(a_kind_of_rays_that_one_side_lacks_leaves_a_claim_about_all_kinds_undeci
     cell.tally.object_tests = 50000;
     cell.seconds = (RtEstimate){1e-6, 1e-6, 1e-6, 1e-6};
     *dear = cell;
-    expect(RT_CLAIM_FALSE, ahead, "5.20");
-    expect(RT_CLAIM_FALSE, faster, "5.25");
+    is_false(ahead, "5.20");
+    is_false(faster, "5.25");
     assert_int_equal(rt_standing(&results, 0, 0, RT_RAY_KIND_COUNT), RT_STANDING_BEST);
     *dear = (RtCell){.left_out = "it would take about 3 s, more than 1 s"};
-    expect(RT_CLAIM_UNDECIDED, ahead, "no measurements of all kinds");
-    expect(RT_CLAIM_UNDECIDED, faster, "no measurements of all kinds");
-    expect(RT_CLAIM_HOLDS,
-           "ratio of object_tests of grid:density=1 to bvh on random:n=10 for primary rays < 1", "0.40");
+    is_undecided(ahead, "no measurements of all kinds");
+    is_undecided(faster, "no measurements of all kinds");
+    holds("ratio of object_tests of grid:density=1 to bvh on random:n=10 for primary rays < 1", "0.40");
     assert_true(isnan(rt_results_cost(&results, 0, 1, RT_ALL_RAYS).seconds.median));
     assert_true(isnan(rt_results_break_even(&results, 0, 1).rays.median));
     assert_int_equal(rt_standing(&results, 0, 0, RT_RAY_KIND_COUNT), RT_STANDING_BEST);
@@ -102,25 +99,23 @@ RT_TEST(totals_of_a_kind_that_all_were_measured_on_compare_and_a_claim_waits_for
     const RtCost total = rt_results_cost(&results, 0, 0, RT_ALL_RAYS);
     assert_true(total.object_tests == 2);
     assert_false(total.whole);
-    expect(RT_CLAIM_UNDECIDED, "object_tests of bvh on random:n=10 for all rays < 5",
-           "no measurements of all kinds");
+    is_undecided("object_tests of bvh on random:n=10 for all rays < 5", "no measurements of all kinds");
 }
 
 RT_TEST(a_quantity_without_a_bound_is_a_figure_and_no_claim) {
     set_all();
-    expect(RT_CLAIM_FIGURE, "time of bvh on random:n=10",
-           "102 [100, 104] ns (bvh on random:n=10, primary rays)");
-    expect(RT_CLAIM_FIGURE, "object_tests of bvh on random for all rays",
-           "2.00 (bvh on random:n=10); 2.10 (bvh on random:n=100); 2.20 (bvh on random:n=1000)");
-    expect(
-        RT_CLAIM_FIGURE, "object_tests of grid",
+    shows("time of bvh on random:n=10", "102 [100, 104] ns (bvh on random:n=10, primary rays)");
+    shows("object_tests of bvh on random for all rays",
+          "2.00 (bvh on random:n=10); 2.10 (bvh on random:n=100); 2.20 (bvh on random:n=1000)");
+    shows(
+        "object_tests of grid",
         "3.30 (grid:density=4 on random:n=10, primary rays) to 10.0 (grid:density=1 on random:n=10, primary "
         "rays)");
-    expect(RT_CLAIM_FIGURE, "ratio of time of bvh to grid:density=1 on random:n=10", "0.49 [0.47, 0.52]");
-    expect(RT_CLAIM_FIGURE, "exponent of time of bvh in n", "0.301 [0.293, 0.310] over 3 values");
+    shows("ratio of time of bvh to grid:density=1 on random:n=10", "0.49 [0.47, 0.52]");
+    shows("exponent of time of bvh in n", "0.301 [0.293, 0.310] over 3 values");
     rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY)->timed = false;
-    expect(RT_CLAIM_FIGURE, "time of bvh on random", "1 of 6 values are unknown");
-    expect(RT_CLAIM_FIGURE, "time of bvh on random:n=10 for all rays", "no measurements of all kinds");
+    shows("time of bvh on random", "1 of 6 values are unknown");
+    shows("time of bvh on random:n=10 for all rays", "no measurements of all kinds");
     strcpy(e->claims[0], "object_tests of bvh");
     strcpy(e->claims[1], "object_tests of bvh > 5");
     e->claim_count = 2;
@@ -135,7 +130,7 @@ RT_TEST(structures_and_csg_trees_have_measures_of_their_own) {
     set_all();
     rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY)->tally.csg_tests = 7000;
     rt_build_at(&results, 0, 1)->counts = true;
-    expect(RT_CLAIM_FIGURE, "csg_tests of grid:density=1 on random:n=10 for all rays", "3.50");
+    shows("csg_tests of grid:density=1 on random:n=10 for all rays", "3.50");
     for (uint32_t c = 0; c < 4; c++) {
         RtBuildResult *build = rt_build_at(&results, 0, c);
         const double seconds = c == 3 ? 0.5 : 1 + c;
@@ -148,20 +143,19 @@ RT_TEST(structures_and_csg_trees_have_measures_of_their_own) {
             cell->ratio = (RtEstimate){ratio, ratio, ratio, ratio};
         }
     }
-    expect(RT_CLAIM_HOLDS, "predicted_cost of grid:density=1 on random:n=10 >= 12", "12.0");
-    expect(RT_CLAIM_UNDECIDED, "predicted_cost of bvh on random:n=10 < 5", "no such value");
-    expect(RT_CLAIM_HOLDS, "break_even of grid:density=1 on random:n=10 < 1001", "1000");
-    expect(RT_CLAIM_FALSE, "break_even of grid:density=2 on random:n=10 < 1e9", "never");
-    expect(RT_CLAIM_FALSE, "break_even of grid:density=4 on random:n=10 < 1e9",
-           "never"); /* ahead only before */
+    holds("predicted_cost of grid:density=1 on random:n=10 >= 12", "12.0");
+    is_undecided("predicted_cost of bvh on random:n=10 < 5", "no such value");
+    holds("break_even of grid:density=1 on random:n=10 < 1001", "1000");
+    is_false("break_even of grid:density=2 on random:n=10 < 1e9", "never");
+    is_false("break_even of grid:density=4 on random:n=10 < 1e9", "never"); /* ahead only before */
     rt_cell_at(&results, 0, 3, RT_RAY_PRIMARY)->ratio = (RtEstimate){1.1, 0.9, 1.2, 0.9};
     rt_cell_at(&results, 0, 3, RT_RAY_SHADOW)->ratio = (RtEstimate){1.1, 0.9, 1.2, 0.9};
-    expect(RT_CLAIM_UNDECIDED, "break_even of grid:density=4 on random:n=10 < 1e9",
-           "0 [0, inf]"); /* ahead of any number, or only of few */
-    expect(RT_CLAIM_FIGURE, "break_even of bvh on random:n=10", "no such value");
+    is_undecided("break_even of grid:density=4 on random:n=10 < 1e9",
+                 "0 [0, inf]"); /* ahead of any number, or only of few */
+    shows("break_even of bvh on random:n=10", "no such value");
     for (uint32_t k = 0; k < 2; k++)
         rt_cell_at(&results, 0, 3, (RtRayKind)k)->ratio = (RtEstimate){0.95, 0.9, 1.5, 0.9};
-    expect(RT_CLAIM_UNDECIDED, "break_even of grid:density=4 on random:n=10 < 1e9", "inf [0, inf]");
+    is_undecided("break_even of grid:density=4 on random:n=10 < 1e9", "inf [0, inf]");
 }
 
 /* The fastest of the grids is another one for each kind of rays. */
@@ -181,14 +175,13 @@ RT_TEST(a_baseline_of_several_settings_stands_for_the_fastest_on_each_kind_of_ra
     rt_cell_at(&results, 0, 2, RT_RAY_PRIMARY)->seconds = (RtEstimate){40e-9, 40e-9, 40e-9, 40e-9};
     rt_cell_at(&results, 0, 3, RT_RAY_SHADOW)->seconds = (RtEstimate){60e-9, 60e-9, 60e-9, 60e-9};
     rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY)->ratio = (RtEstimate){0.4, 0.39, 0.41, 0.3};
-    expect(RT_CLAIM_HOLDS, both, "2.00 (bvh on random:n=10)");
-    expect(RT_CLAIM_FALSE, strcat(strcpy(claim, ratio), " > 1.9"),
-           "1.67 (bvh on random:n=10, shadow rays); holds for primary rays; does not hold for shadow rays");
-    expect(RT_CLAIM_FIGURE, strcat(strcpy(claim, ratio), " for primary rays"), "2.50 [2.44, 2.56]");
-    expect(RT_CLAIM_FIGURE, "time of grid:best on random:n=10 for all rays",
-           "50.0 ns (grid:best on random:n=10)");
-    expect(RT_CLAIM_FIGURE, "object_tests of grid:best on random:n=10 for all rays", "4.15 (grid:best");
-    expect(RT_CLAIM_FIGURE, "correlation of time and time of all on random:n=10", "fewer than two values");
+    holds(both, "2.00 (bvh on random:n=10)");
+    is_false(strcat(strcpy(claim, ratio), " > 1.9"),
+             "1.67 (bvh on random:n=10, shadow rays); holds for primary rays; does not hold for shadow rays");
+    shows(strcat(strcpy(claim, ratio), " for primary rays"), "2.50 [2.44, 2.56]");
+    shows("time of grid:best on random:n=10 for all rays", "50.0 ns (grid:best on random:n=10)");
+    shows("object_tests of grid:best on random:n=10 for all rays", "4.15 (grid:best");
+    shows("correlation of time and time of all on random:n=10", "fewer than two values");
     RtClaim parsed;
     assert_bad_input(rt_claim_parse(e, "bytes of grid:best < 9", &parsed, error),
                      "each with its own bytes: name one");
@@ -246,15 +239,14 @@ RT_TEST(a_claim_that_is_none_is_refused_with_what_would_be_right) {
 RT_TEST(few_rays_leave_a_claim_undecided_and_the_verdict_names_their_number) {
     set_all();
     rt_cell_at(&results, 0, 1, RT_RAY_SHADOW)->tally.rays = 999;
-    expect(RT_CLAIM_UNDECIDED, "object_tests of grid:density=1 on random:n=10 > 1",
-           "shadow rays), but of 999 rays, and fewer than 1000 decide nothing; holds for primary rays; "
-           "undecided "
-           "for shadow rays");
-    expect(RT_CLAIM_UNDECIDED, "ratio of time of bvh to grid:density=1 on random:n=10 for shadow rays < 1",
-           "but of 999 rays");
-    expect(RT_CLAIM_HOLDS, "object_tests of grid:density=1 on random:n=10 for primary rays > 1",
-           "10.0 (grid");
-    expect(RT_CLAIM_HOLDS, "object_tests of grid:density=1 on random:n=10 for all rays > 1", "10.0 (grid");
+    is_undecided("object_tests of grid:density=1 on random:n=10 > 1",
+                 "shadow rays), but of 999 rays, and fewer than 1000 decide nothing; holds for primary rays; "
+                 "undecided "
+                 "for shadow rays");
+    is_undecided("ratio of time of bvh to grid:density=1 on random:n=10 for shadow rays < 1",
+                 "but of 999 rays");
+    holds("object_tests of grid:density=1 on random:n=10 for primary rays > 1", "10.0 (grid");
+    holds("object_tests of grid:density=1 on random:n=10 for all rays > 1", "10.0 (grid");
 }
 
 RT_TESTS(claims, set_up, tear_down)

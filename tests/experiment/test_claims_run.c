@@ -17,8 +17,8 @@ PLACES_WITH(claiming)
 
 PLACE_TEST(a_false_claim_is_said_to_be_and_is_exit_code_1_if_strict) {
     assert_runs(place, "run small.yaml --out out --threads 1");
-    assert_in_file(place, "output", "holds            object_tests of grid falls with density");
-    assert_in_file(place, "output", "does not hold    object_tests of bvh > 1000");
+    assert_in_file(place, "output", "holds            object_tests of grid falls with density",
+                   "does not hold    object_tests of bvh > 1000");
     assert_in_file(place, "out/report.html", "does not hold");
     assert_ends(place, "run small.yaml --out out --threads 1 --resume --strict", 1,
                 "1 of 2 claims do not hold, the first: object_tests of bvh > 1000");
@@ -30,11 +30,11 @@ PLACE_TEST(a_figure_is_shown_with_the_claims_and_counted_with_none) {
     write_changed(place, "small.yaml", claiming, "object_tests of bvh > 1000",
                   "object_tests of bvh\n  - exponent of object_tests of grid in density");
     assert_runs(place, "run small.yaml --out out --threads 1 --strict");
-    assert_in_file(place, "output", "figure           object_tests of bvh\n");
-    assert_in_file(place, "output", " over 3 values (grid on random:n=200)\n");
+    assert_in_file(place, "output", "figure           object_tests of bvh\n",
+                   " over 3 values (grid on random:n=200)\n");
     assert_in_file(place, "out/report.html",
-                   "<span class=\"verdict readout\">figure</span> object_tests of bvh");
-    assert_in_file(place, "out/report.html", "\"verdict holds\">1 of 1 claim holds</span>");
+                   "<span class=\"verdict readout\">figure</span> object_tests of bvh",
+                   "\"verdict holds\">1 of 1 claim holds</span>");
 }
 
 PLACE_TEST(a_claim_about_a_missing_plugin_has_no_measurements_and_is_no_failure) {
@@ -61,8 +61,8 @@ PLACE_TEST(a_finding_section_and_papers_are_added_to_a_run_that_is_there_and_not
                   "finding: >-\n  Four it is,\n  indeed.\nsection: papers\n"
                   "paper: {citation: \"A & B, 1988\", page: 19, quote: Four <is> best.}\ncount_only");
     assert_ends(place, "run small.yaml --out out --threads 1 --resume", 0, "nothing was left to measure");
-    assert_in_file(place, "out/report.html", "<h2>Finding</h2><p>Four it is, indeed.");
-    assert_in_file(place, "out/report.html", "\"quote\":\"Four \\u003cis> best.\"");
+    assert_in_file(place, "out/report.html", "<h2>Finding</h2><p>Four it is, indeed.",
+                   "\"quote\":\"Four \\u003cis> best.\"");
     assert_in_file(place, "out/experiment.yaml", "section: papers");
     assert_runs(place, "report out");
     assert_runs(place, "reproduce out");
@@ -79,15 +79,12 @@ PLACE_TEST(claims_that_change_after_a_run_are_shown_as_such_beside_the_original)
     assert_not_in_file(place, "out/manifest.json", "claims_changed");
     write_changed(place, "small.yaml", claiming, "bvh > 1000", "bvh < 1000\n  - object_tests of bvh");
     assert_runs(place, "run small.yaml --out out --threads 1 --resume");
-    assert_in_file(place, "output", "object_tests of bvh < 1000 [stated after the run began]");
-    assert_in_file(place, "output", "dropped since    object_tests of bvh > 1000");
-    assert_in_file(place, "output", "object_tests of grid falls with density\n");
-    assert_in_file(place, "output", "figure           object_tests of bvh\n");
-    assert_in_file(place, "out/report.html", "stated after the run began");
-    assert_in_file(place, "out/report.html",
+    assert_in_file(place, "output", "object_tests of bvh < 1000 [stated after the run began]",
+                   "dropped since    object_tests of bvh > 1000", "object_tests of grid falls with density\n",
+                   "figure           object_tests of bvh\n");
+    assert_in_file(place, "out/report.html", "stated after the run began",
                    "dropped after the run began</span> object_tests of bvh &gt; 1000");
-    assert_in_file(place, "out/manifest.json", "claims_changed");
-    assert_in_file(place, "out/manifest.json", "\"object_tests of bvh > 1000\"");
+    assert_in_file(place, "out/manifest.json", "claims_changed", "\"object_tests of bvh > 1000\"");
     assert_runs(place, "report out");
     assert_in_file(place, "output", "[stated after the run began]");
     write_in(place, "small.yaml", claiming);

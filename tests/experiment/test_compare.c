@@ -60,16 +60,17 @@ static void draw_times(const Sides *sides, uint32_t run, uint64_t seed) {
 }
 
 /* One run as both sides of all pairs, with times that are drawn. */
-static void load_sides(const Place *place, Sides *sides) {
+static Sides load_sides(const Place *place) {
     Path out = path_in(place, "out");
     write_in(place, "small.yaml", experiment_yaml);
     assert_ok(run_small(place, "out", false, (RtRunOptions){.start = RT_START_ANEW}, error));
-    *sides = (Sides){.experiments = rt_alloc(RUNS, sizeof(RtExperiment))};
-    assert_non_null(sides->experiments);
+    Sides sides = {.experiments = rt_alloc(RUNS, sizeof(RtExperiment))};
+    assert_non_null(sides.experiments);
     for (uint32_t i = 0; i < RUNS; i++) {
-        assert_ok(rt_results_load(out.text, &sides->experiments[i], &sides->results[i], error));
-        draw_times(sides, i, 1);
+        assert_ok(rt_results_load(out.text, &sides.experiments[i], &sides.results[i], error));
+        draw_times(&sides, i, 1);
     }
+    return sides;
 }
 
 static void clear_sides(Sides *sides) {
@@ -107,8 +108,7 @@ static bool is_printed(const RtComparison *comparison, const char *words) {
 PLACES_WITH(NULL)
 
 PLACE_TEST(a_run_does_not_differ_from_itself) {
-    OWNED(clear_sides) Sides sides;
-    load_sides(place, &sides);
+    OWNED(clear_sides) Sides sides = load_sides(place);
     for (uint32_t t = 0; t < SCENES; t++) {
         for (uint32_t c = 0; c < ACCELS; c++) {
             for (uint32_t k = 0; k < KINDS; k++) {
@@ -128,8 +128,7 @@ PLACE_TEST(a_run_does_not_differ_from_itself) {
 /* 5 %: one of twenty pairs of runs of one build. */
 PLACE_TEST(of_runs_of_one_build_at_most_five_in_a_hundred_pairs_report_a_difference) {
     enum { TRIALS = 400 };
-    OWNED(clear_sides) Sides sides;
-    load_sides(place, &sides);
+    OWNED(clear_sides) Sides sides = load_sides(place);
     for (uint32_t pairs = 1; pairs <= MOST_PAIRS; pairs++) {
         int reports = 0;
         for (uint64_t seed = 0; seed < TRIALS; seed++) {
@@ -144,9 +143,8 @@ PLACE_TEST(of_runs_of_one_build_at_most_five_in_a_hundred_pairs_report_a_differe
 /* The same runs, one accelerator of which takes longer. */
 PLACE_TEST(an_accelerator_that_is_ten_per_cent_slower_is_found_and_no_other_is_called_different) {
     enum { TRIALS = 200 };
-    OWNED(clear_sides) Sides sides;
+    OWNED(clear_sides) Sides sides = load_sides(place);
     int found = 0, others = 0;
-    load_sides(place, &sides);
     for (uint64_t seed = 0; seed < TRIALS; seed++) {
         for (uint32_t i = 0; i < RUNS; i++) draw_times(&sides, i, seed);
         for (uint32_t i = 1; i < RUNS; i += 2) scale_accel(&sides, i, 1, 1.1);
@@ -160,8 +158,7 @@ PLACE_TEST(an_accelerator_that_is_ten_per_cent_slower_is_found_and_no_other_is_c
 }
 
 PLACE_TEST(a_change_of_all_accelerators_is_printed_and_no_verdict) {
-    OWNED(clear_sides) Sides sides;
-    load_sides(place, &sides);
+    OWNED(clear_sides) Sides sides = load_sides(place);
     for (uint32_t c = 0; c < ACCELS; c++) scale_accel(&sides, 1, c, 1.5);
     compare_sides(&sides, 1, 0.02);
     assert_int_equal(rt_comparison_count(&sides.comparison, RT_CHANGE_NONE), ACCELS);
@@ -170,8 +167,7 @@ PLACE_TEST(a_change_of_all_accelerators_is_printed_and_no_verdict) {
 }
 
 PLACE_TEST(what_is_faster_slower_or_counts_otherwise_is_said) {
-    OWNED(clear_sides) Sides sides;
-    load_sides(place, &sides);
+    OWNED(clear_sides) Sides sides = load_sides(place);
     scale_accel(&sides, 1, 0, 2);
     scale_accel(&sides, 1, 1, 0.5);
     cell_at(&sides, 1, 0, 0, 1)->tally.steps++;
@@ -190,8 +186,7 @@ PLACE_TEST(what_is_faster_slower_or_counts_otherwise_is_said) {
 /* 1 - 2 / C(12, 6) = 99.78 % for each; 32 of them miss by 6.93 % at most. 32 cells take 1 - 0.05 / 32 =
  * 99.84 %, and 1 - 2 / C(14, 7) is 99.94 %. */
 PLACE_TEST(the_confidence_that_the_rounds_reach_is_said_and_how_many_it_takes) {
-    OWNED(clear_sides) Sides sides;
-    load_sides(place, &sides);
+    OWNED(clear_sides) Sides sides = load_sides(place);
     compare_sides(&sides, 1, 0);
     assert_true(fabs(sides.comparison.together - (1 - 32 * 2 / 924.0)) < 1e-9);
     assert_true(is_printed(&sides.comparison,
@@ -205,8 +200,7 @@ PLACE_TEST(the_confidence_that_the_rounds_reach_is_said_and_how_many_it_takes) {
 }
 
 PLACE_TEST(too_few_accelerators_or_scenes_have_no_verdict) {
-    OWNED(clear_sides) Sides sides;
-    load_sides(place, &sides);
+    OWNED(clear_sides) Sides sides = load_sides(place);
     for (uint32_t t = 0; t < SCENES; t++) {
         for (uint32_t c = 0; c < ACCELS; c++) {
             for (uint32_t k = 0; k < KINDS && (t > 0 || c > 2); k++) {
@@ -226,8 +220,7 @@ PLACE_TEST(too_few_accelerators_or_scenes_have_no_verdict) {
 }
 
 PLACE_TEST(cells_that_do_not_compare_say_why) {
-    OWNED(clear_sides) Sides sides;
-    load_sides(place, &sides);
+    OWNED(clear_sides) Sides sides = load_sides(place);
     sides.results[1].workloads[0].ray_fingerprints[RT_RAY_RANDOM]++;
     rt_free(cell_at(&sides, 1, 0, 0, 0)->round_times);
     cell_at(&sides, 1, 0, 0, 0)->round_times = NULL;
@@ -271,8 +264,7 @@ PLACE_TEST(results_of_other_rays_are_not_said_to_count_the_same) {
     assert_runs(place, "run small.yaml --out c");
     assert_runs(place, "run small.yaml --out d");
     assert_runs(place, "compare a b c d");
-    assert_in_file(place, "output", "other rays");
-    assert_in_file(place, "output", "not the same in all results, so ");
+    assert_in_file(place, "output", "other rays", "not the same in all results, so ");
 }
 
 PLACE_TEST(strict_makes_something_slower_an_exit_code) {
@@ -333,8 +325,7 @@ PLACE_TEST(what_was_not_timed_in_every_round_is_not_compared) {
     write_other(place, "echo >>runs\n[ \"$(wc -l <runs)\" != 2 ] || set -- \"${@/grid/octree}\"", "\"$@\"");
     assert_runs(place, "compare balls:size=1 --accel bvh --accel grid --rays random --limit 100 "
                        "--rounds 3 --with ./other");
-    assert_in_file(place, "output", "not timed");
-    assert_in_file(place, "output", "only before");
+    assert_in_file(place, "output", "not timed", "only before");
 }
 
 PLACE_TEST(programs_that_record_other_rays_are_told_how_to_compare_all_the_same) {

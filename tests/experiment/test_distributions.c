@@ -62,8 +62,8 @@ PLACE_TEST(files_that_are_named_after_scenes_have_portable_names_of_their_own) {
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
     assert_in_file(place, "out/plots/histograms-N-50-X-2.svg", "</svg>");
     assert_in_file(place, "out/report.html",
-                   "Object tests and steps of each ray, and sizes and depths of leaves");
-    assert_in_file(place, "out/report.html", "plots/histograms-N-50-X-2.pdf");
+                   "Object tests and steps of each ray, and sizes and depths of leaves",
+                   "plots/histograms-N-50-X-2.pdf");
 }
 
 /* On one thread and on two, and counted without them before: the journal of a shard has all that is needed.
@@ -110,12 +110,10 @@ PLACE_TEST(bench_shows_medians_percentiles_and_maxima) {
                                 "--count-only --distribution";
     char json[256];
     assert_runs(place, command);
-    assert_in_file(place, "output", "tests: 50 %  99 %  max  steps: 50 %  99 %  max");
-    assert_in_file(place, "output", "leaf size: 50 %");
+    assert_in_file(place, "output", "tests: 50 %  99 %  max  steps: 50 %  99 %  max", "leaf size: 50 %");
     snprintf(json, sizeof json, "%s --json", command);
     assert_runs(place, json);
-    assert_in_file(place, "output", "\"p999\"");
-    assert_in_file(place, "output", "\"histograms\"");
+    assert_in_file(place, "output", "\"p999\"", "\"histograms\"");
 }
 
 /* ---- frames, and what version 1.0 had ---- */
@@ -150,8 +148,7 @@ PLACE_TEST(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_queries_fo
                   "render: yes\nrounds: 6\nmilliseconds: 0\nexpect:\n"
                   "  - query_share of bvh < 1\n  - render_time of grid < 3600");
     assert_runs(place, "run small.yaml --out out --threads 1 --strict");
-    assert_in_file(place, "output", "% in queries");
-    assert_in_file(place, "output", "holds            query_share of bvh < 1");
+    assert_in_file(place, "output", "% in queries", "holds            query_share of bvh < 1");
     OWNED_MEMORY char *first = read_in(place, "out/render.csv");
     assert_int_equal(remove(path.text), 0);
     assert_runs(place, "run small.yaml --out out --threads 1 --resume");

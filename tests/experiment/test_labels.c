@@ -58,18 +58,13 @@ PLACE_TEST(files_have_whole_labels_and_csv_and_json_call_them_alike) {
     static const char row[] = "\"" SCENE "0.025\",\"" SCENE "0.025\",50,";
     assert_runs(place, "bench '" SCENE "0.0125|0.025' -a '" SPEC
                        "10|12' --rays random --limit 50 --count-only --csv counts.csv --json");
-    assert_in_file(place, "counts.csv", row);
-    assert_in_file(place, "counts.csv", ",\"" SPEC "12\",\"" SPEC "12,");
-    assert_in_file(place, "output", "\"scene\": \"" SCENE "0.025\"");
-    assert_in_file(place, "output", "\"scene_spec\": \"" SCENE "0.025\"");
-    assert_in_file(place, "output", "\"accel\": \"" SPEC "12\"");
-    assert_in_file(place, "output", "\"spec\": \"" SPEC "12,");
+    assert_in_file(place, "counts.csv", row, ",\"" SPEC "12\",\"" SPEC "12,");
+    assert_in_file(place, "output", "\"scene\": \"" SCENE "0.025\"", "\"scene_spec\": \"" SCENE "0.025\"",
+                   "\"accel\": \"" SPEC "12\"", "\"spec\": \"" SPEC "12,");
     assert_runs(place, "render balls --accel grid --size 4x4 -o a.png --stats stats.json");
-    assert_in_file(place, "stats.json", "\"accel\": \"grid\"");
-    assert_in_file(place, "stats.json", "\"spec\": \"grid:rule=");
+    assert_in_file(place, "stats.json", "\"accel\": \"grid\"", "\"spec\": \"grid:rule=");
     assert_runs(place, "trace balls --pixel 1,1 --size 4x4 --accel grid --json");
-    assert_in_file(place, "output", "\"accel\": \"grid\"");
-    assert_in_file(place, "output", "\"spec\": \"grid:rule=");
+    assert_in_file(place, "output", "\"accel\": \"grid\"", "\"spec\": \"grid:rule=");
 }
 
 PLACE_TEST(files_of_hits_have_the_names_of_their_cells) {
@@ -100,9 +95,8 @@ static void run_files(const Place *place) {
 PLACE_TEST(a_run_with_long_labels_writes_them_whole_and_reads_them_again) {
     run_files(place);
     assert_in_file(place, "out/cells.jsonl", "\"scene\":\"" SCENE "0.025\",\"accel\":\"" SPEC "12\"");
-    assert_in_file(place, "out/manifest.json", "\"accel\": \"" SPEC "12\"");
-    assert_in_file(place, "out/manifest.json", "\"spec\": \"" SPEC "12\"");
-    assert_in_file(place, "out/manifest.json", "\"scene_spec\": \"" SCENE "0.025\"");
+    assert_in_file(place, "out/manifest.json", "\"accel\": \"" SPEC "12\"", "\"spec\": \"" SPEC "12\"",
+                   "\"scene_spec\": \"" SCENE "0.025\"");
     assert_in_file(place, "out/counts.csv", "\"" SPEC "12\"");
     assert_in_file(place, "out/report.html", SPEC "12");
     assert_in_file(place, "output", "kd:...,max_depth=12");
@@ -114,8 +108,7 @@ PLACE_TEST(a_run_with_long_labels_writes_them_whole_and_reads_them_again) {
 /* Each letter outside ASCII is two bytes. */
 PLACE_TEST(files_whose_names_differ_in_letters_outside_ascii_have_labels_and_files_of_their_own) {
     run_files(place);
-    assert_in_file(place, "out/counts.csv", "\ns__,s\xc3\xa4.off,");
-    assert_in_file(place, "out/counts.csv", "\ns__-2,s\xc3\xb6.off,");
+    assert_in_file(place, "out/counts.csv", "\ns__,s\xc3\xa4.off,", "\ns__-2,s\xc3\xb6.off,");
     assert_true(rt_file_exists(path_in(place, "out/images/s__.png").text));
     assert_true(rt_file_exists(path_in(place, "out/images/s__-2.png").text));
 }

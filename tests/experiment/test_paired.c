@@ -41,9 +41,8 @@ RT_TEST(what_is_slower_in_every_round_is_behind_however_wide_the_intervals_are) 
     assert_int_equal(rt_standing(&results, 0, 1, RT_RAY_PRIMARY), RT_STANDING_BEHIND);
     assert_int_equal(rt_standing(&results, 0, 2, RT_RAY_PRIMARY), RT_STANDING_LEVEL);
     assert_int_equal(rt_standing(&results, 0, 3, RT_RAY_PRIMARY), RT_STANDING_BEHIND); /* not timed */
-    expect(RT_CLAIM_HOLDS,
-           "ratio of time of grid:density=1 to grid:density=2 on random:n=10 for primary rays > 1.08",
-           "1.10 [");
+    holds("ratio of time of grid:density=1 to grid:density=2 on random:n=10 for primary rays > 1.08",
+          "1.10 [");
 }
 
 /* One kind is fast in the rounds in which the other is slow: their sum is the same in all. */
@@ -56,9 +55,8 @@ RT_TEST(all_rays_are_summed_within_a_round_and_weighted_by_their_sets) {
     set_rounds(1, RT_RAY_SHADOW, two, base);
     RtEstimate ratio = rt_results_time_ratio(&results, 0, 1, 0, RT_ALL_RAYS, 0.95);
     assert_true(fabs(ratio.low - 2) < 1e-9 && fabs(ratio.high - 2) < 1e-9);
-    expect(RT_CLAIM_HOLDS, "ratio of time of grid:density=1 to bvh on random:n=10 for all rays > 1.99",
-           "2.00");
-    expect(RT_CLAIM_UNDECIDED, "ratio of time of grid:density=1 to bvh on random:n=10 > 1.99", "rays");
+    holds("ratio of time of grid:density=1 to bvh on random:n=10 for all rays > 1.99", "2.00");
+    is_undecided("ratio of time of grid:density=1 to bvh on random:n=10 > 1.99", "rays");
     results.workloads[0].rays[RT_RAY_SHADOW] = 0;
     ratio = rt_results_time_ratio(&results, 0, 1, 0, RT_ALL_RAYS, 0.95);
     assert_true(ratio.low == 1 && ratio.high == 3);
@@ -85,7 +83,7 @@ RT_TEST(with_many_intervals_each_covers_more) {
     uint32_t count;
     set_rounds(0, RT_RAY_PRIMARY, drifting, NULL);
     set_rounds(1, RT_RAY_PRIMARY, ns, drifting);
-    expect(RT_CLAIM_HOLDS, "ratio of time of grid:density=1 to bvh on random:n=10 for primary rays > 1", "");
+    holds("ratio of time of grid:density=1 to bvh on random:n=10 for primary rays > 1", "");
     assert_true(rt_claims_coverage(&results, &count) == 0.95);
     assert_int_equal(count, 1);
     for (uint32_t i = 1; i < 20; i++)

@@ -109,9 +109,7 @@ PLACE_TEST(run_and_bench_thin_a_set_to_the_same_rays) {
 
 static int occurrences(const Place *place, const char *name, const char *what) {
     OWNED_MEMORY char *text = read_in(place, name);
-    int count = 0;
-    for (const char *at = text; (at = strstr(at, what)); at++) count++;
-    return count;
+    return count_of(text, what);
 }
 
 PLACE_TEST(a_few_rays_that_are_repeated_until_they_are_learnt_cause_a_warning) {
@@ -323,9 +321,8 @@ PLACE_TEST(shipped_scripts_are_found_where_they_are_installed_and_not_copied) {
     name_plots(place, "limit: 100\nplots: [style.gp, ../lecture/growth.gp]\n");
     make_gnuplot(place, "#!/bin/sh\nprintf '%s\\n' \"$@\" >../arguments\n");
     assert_ends_with_path(place, path_in(place, "bin").text, "run small.yaml --out out", 0, "");
-    assert_in_file(place, "arguments", "share/raytally/experiments/style.gp");
-    assert_in_file(place, "arguments", "share/raytally/experiments/lecture/growth.gp");
-    assert_in_file(place, "arguments", "experiment = \"small\"");
+    assert_in_file(place, "arguments", "share/raytally/experiments/style.gp",
+                   "share/raytally/experiments/lecture/growth.gp", "experiment = \"small\"");
     assert_false(rt_file_exists(path_in(place, "out/plots/growth.gp").text));
 }
 

@@ -97,8 +97,8 @@ PLACE_TEST(a_total_weighs_each_kind_by_its_whole_set_to_the_digit) {
     assert_true(total.object_tests == 1000 * 3 + 7000 * 9 + 5 * 5);
     assert_true(rt_results_cost(&results, 0, 2, RT_ALL_RAYS).object_tests == (3000 + 63000 + 25) / 8005.0);
     assert_runs(place, "report out");
-    assert_in_file(place, "out/report.html", "all kinds of rays together, of 8005 rays, 35 measured");
-    assert_in_file(place, "out/report.html", "1000 primary, 7000 shadow and 5 secondary rays; of 8005 rays");
+    assert_in_file(place, "out/report.html", "all kinds of rays together, of 8005 rays, 35 measured",
+                   "1000 primary, 7000 shadow and 5 secondary rays; of 8005 rays");
     assert_in_file(place, "out/tables.md", "all kinds of rays, of 8005 rays, 35 measured.");
     assert_in_file(place, "out/tables.tex", "all kinds of rays, of 8005 rays, 35 measured.");
 }

@@ -54,7 +54,7 @@ static RtResults results;
 void fuzz_prepare_results(void) {
     RtError error;
     fuzz_write("experiment.yaml", experiment_text, strlen(experiment_text));
-    if (rt_experiment_load(&experiment, fuzz_path("experiment.yaml"), false, &error) != RT_OK)
+    if (rt_experiment_load(&experiment, fuzz_path("experiment.yaml"), false, NULL, &error) != RT_OK)
         fuzz_fail("%s", error.message);
 }
 
@@ -71,7 +71,7 @@ void fuzz_experiment(const Input *input) {
     RtSweptKey keys[RT_MAX_SWEPT_KEYS];
     RtError error = {RT_OK, ""};
     for (int quick = 0; quick < 2; quick++) {
-        if (!fuzz_accepted(rt_experiment_load(&loaded, input->path, quick, &error), &error)) return;
+        if (!fuzz_accepted(rt_experiment_load(&loaded, input->path, quick, NULL, &error), &error)) return;
         CHECK(loaded.workload_count > 0 && loaded.candidate_count > 0 && loaded.kind_count > 0);
         rt_experiment_swept(&loaded, keys);
     }
@@ -220,7 +220,8 @@ void fuzz_manifest(const Input *input) {
     for (uint32_t i = 0; rt_manifest_candidate(manifest, i, &candidate); i++)
         rt_manifest_is_missing(manifest, i);
     rt_manifest_is_whole(manifest, "grid", "density");
-    fuzz_accepted(rt_experiment_load_from_manifest(&loaded, fuzz_path("experiment.yaml"), manifest, &error),
+    fuzz_accepted(rt_experiment_load(&loaded, fuzz_path("experiment.yaml"),
+                                     json_is_true(json_object_get(manifest, "quick")), manifest, &error),
                   &error);
     json_decref(manifest);
 }

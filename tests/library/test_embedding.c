@@ -2,8 +2,6 @@
 /* raytally.h: its functions do what the program does, reject what it rejects, and leak nothing. */
 #include "library_testing.h"
 
-#include "scenes/open.h"
-
 RT_TEST(counters_and_kinds_of_rays_have_their_names) {
     assert_string_equal(raytally_counter_name(RAYTALLY_RAYS), "rays");
     assert_string_equal(raytally_counter_name(RAYTALLY_PASSED_ON), "passed_on");
@@ -90,21 +88,18 @@ RT_TEST(the_camera_changes_only_while_no_accelerator_stands_over_the_scene) {
 
 /* ---- one scene for what follows ---- */
 
-typedef struct Balls {
+static struct {
     raytally_scene *scene;
     raytally_accelerator *accels[3]; /* brute, grid, ideal */
     raytally_rays *rays;             /* primary, of 16 x 16 samples */
-} Balls;
-
-static Balls balls;
+} balls;
 
 static int open_balls(void **state) {
     static const char *const specs[3] = {"brute", "grid", "ideal"};
     assert_fine(raytally_scene_open("balls:size=1", &balls.scene, error));
     assert_fine(raytally_scene_set_sampling(balls.scene, 16, 16, 1, error));
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         assert_fine(raytally_accelerator_build(balls.scene, specs[i], 1, &balls.accels[i], error));
-    }
     assert_fine(raytally_rays_record(balls.accels[0], RAYTALLY_PRIMARY, NULL, &balls.rays, error));
     *state = &balls;
     return 0;

@@ -32,48 +32,45 @@ static RtRecording make_recording(int threads) {
     return (RtRecording){.depth = 4, .seed = 7, .random = 10000, .threads = threads};
 }
 
-typedef struct Stage {
+static struct Stage {
     RtScene scene;
     RtAccel *accel;
     RtRaySet sets[RT_RAY_KIND_COUNT];
-} Stage;
+} stage;
 
 static void clear_sets(RtRaySet *sets) {
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
 }
 
 static int set_up(void **state) {
-    static Stage stage;
+    (void)state;
     make_scene(&stage.scene);
     stage.accel = open_accel(&stage.scene, "bvh");
     RtRecording recording = make_recording(1);
     assert_ok(rt_rayset_record(stage.sets, stage.accel, &recording, error));
-    *state = &stage;
     return 0;
 }
 
 static int tear_down(void **state) {
-    Stage *stage = *state;
-    clear_sets(stage->sets);
-    rt_accel_destroy(stage->accel);
-    rt_scene_clear(&stage->scene);
+    (void)state;
+    clear_sets(stage.sets);
+    rt_accel_destroy(stage.accel);
+    rt_scene_clear(&stage.scene);
     return rt_alloc_live() == 0 ? 0 : -1;
 }
 
 /* Records again; returns the sets, and asserts which kinds are the same as those of the stage. */
-static void record_again(const Stage *stage, const RtAccel *accel, RtRecording recording, unsigned changed,
-                         RtRaySet *sets) {
+static void record_again(const RtAccel *accel, RtRecording recording, unsigned changed, RtRaySet *sets) {
     assert_ok(rt_rayset_record(sets, accel, &recording, error));
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
-        bool same = sets[kind].fingerprint == stage->sets[kind].fingerprint;
+        bool same = sets[kind].fingerprint == stage.sets[kind].fingerprint;
         assert_true(same == !(changed >> kind & 1));
     }
 }
 
 RT_TEST(every_ray_is_valid_and_of_its_kind) {
-    const Stage *stage = *state;
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
-        const RtRaySet *set = &stage->sets[kind];
+        const RtRaySet *set = &stage.sets[kind];
         assert_int_equal(set->kind, kind);
         assert_true(set->count > 0);
         for (uint64_t i = 0; i < set->count; i++) {
@@ -81,8 +78,8 @@ RT_TEST(every_ray_is_valid_and_of_its_kind) {
             assert_int_equal(set->rays[i].kind, kind);
         }
     }
-    assert_int_equal(stage->sets[RT_RAY_PRIMARY].count, 50 * 37);
-    assert_int_equal(stage->sets[RT_RAY_RANDOM].count, 10000);
+    assert_int_equal(stage.sets[RT_RAY_PRIMARY].count, 50 * 37);
+    assert_int_equal(stage.sets[RT_RAY_RANDOM].count, 10000);
 }
 
 /* Shadow rays that start within the glass ball, of radius 1 about (-1, 0, 1). */
@@ -96,25 +93,23 @@ static uint64_t count_from_within(const RtRaySet *shadows) {
 }
 
 RT_TEST(light_from_outside_is_asked_for_outside_of_glass_alone) {
-    const Stage *stage = *state;
     RtRaySet sets[RT_RAY_KIND_COUNT];
     RtRecording recording = make_recording(1);
     recording.light_from_outside = true;
-    record_again(stage, stage->accel, recording, 1U << RT_RAY_SHADOW, sets);
-    assert_true(count_from_within(&stage->sets[RT_RAY_SHADOW]) > 0);
+    record_again(stage.accel, recording, 1U << RT_RAY_SHADOW, sets);
+    assert_true(count_from_within(&stage.sets[RT_RAY_SHADOW]) > 0);
     assert_int_equal(count_from_within(&sets[RT_RAY_SHADOW]), 0);
-    assert_true(sets[RT_RAY_SHADOW].count != stage->sets[RT_RAY_SHADOW].count);
+    assert_true(sets[RT_RAY_SHADOW].count != stage.sets[RT_RAY_SHADOW].count);
     clear_sets(sets);
 }
 
 RT_TEST(sets_are_the_same_on_any_number_of_threads_and_any_accelerator) {
-    const Stage *stage = *state;
     for (int threads = 2; threads <= 3; threads++) {
-        OWNED_ACCEL RtAccel *other = open_accel(&stage->scene, threads == 2 ? "brute" : "grid");
+        OWNED_ACCEL RtAccel *other = open_accel(&stage.scene, threads == 2 ? "brute" : "grid");
         RtRaySet sets[RT_RAY_KIND_COUNT];
-        record_again(stage, other, make_recording(threads), 0, sets);
+        record_again(other, make_recording(threads), 0, sets);
         for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
-            const RtRaySet *expected = &stage->sets[kind];
+            const RtRaySet *expected = &stage.sets[kind];
             assert_int_equal(sets[kind].count, expected->count);
             assert_memory_equal(sets[kind].rays, expected->rays, expected->count * sizeof(RtRay));
         }
@@ -124,36 +119,33 @@ RT_TEST(sets_are_the_same_on_any_number_of_threads_and_any_accelerator) {
 
 /* Without a camera no frame can be traced. */
 RT_TEST(a_kind_is_the_same_when_it_is_recorded_alone_and_random_rays_need_no_frame) {
-    const Stage *stage = *state;
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         RtRaySet sets[RT_RAY_KIND_COUNT];
         RtRecording recording = make_recording(2);
-        RtScene scene = stage->scene;
-        RtAccel accel = *stage->accel;
+        RtScene scene = stage.scene;
+        RtAccel accel = *stage.accel;
         recording.kinds = 1u << kind;
         if (kind == RT_RAY_RANDOM) scene.camera.up = scene.camera.at = scene.camera.from;
         accel.scene = kind == RT_RAY_RANDOM ? &scene : accel.scene;
-        const RtAccel *asked = kind == RT_RAY_RANDOM ? &accel : stage->accel;
+        const RtAccel *asked = kind == RT_RAY_RANDOM ? &accel : stage.accel;
         assert_ok(rt_rayset_record(sets, asked, &recording, error));
-        assert_int_equal(sets[kind].count, stage->sets[kind].count);
-        assert_true(sets[kind].fingerprint == stage->sets[kind].fingerprint);
+        assert_int_equal(sets[kind].count, stage.sets[kind].count);
+        assert_true(sets[kind].fingerprint == stage.sets[kind].fingerprint);
         clear_sets(sets);
     }
 }
 
 RT_TEST(another_seed_changes_bounces_and_random_rays_alone) {
-    const Stage *stage = *state;
     RtRaySet sets[RT_RAY_KIND_COUNT];
     RtRecording recording = make_recording(0);
     recording.seed++;
-    record_again(stage, stage->accel, recording, ~0U << RT_RAY_DIFFUSE, sets);
+    record_again(stage.accel, recording, ~0U << RT_RAY_DIFFUSE, sets);
     clear_sets(sets);
 }
 
 RT_TEST(there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surface) {
-    const Stage *stage = *state;
-    const RtRaySet *primary = &stage->sets[RT_RAY_PRIMARY], *diffuse = &stage->sets[RT_RAY_DIFFUSE];
-    OWNED_QUERY query = open_query(stage->accel);
+    const RtRaySet *primary = &stage.sets[RT_RAY_PRIMARY], *diffuse = &stage.sets[RT_RAY_DIFFUSE];
+    OWNED_QUERY query = open_query(stage.accel);
     uint64_t next = 0, escaped = 0;
     for (uint64_t i = 0; i < primary->count; i++) {
         RtHit hit, bounced;
@@ -173,8 +165,7 @@ RT_TEST(there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surface) {
 }
 
 RT_TEST(occlusion_rays_are_the_diffuse_ones) {
-    const Stage *stage = *state;
-    const RtRaySet *diffuse = &stage->sets[RT_RAY_DIFFUSE], *occlusion = &stage->sets[RT_RAY_OCCLUSION];
+    const RtRaySet *diffuse = &stage.sets[RT_RAY_DIFFUSE], *occlusion = &stage.sets[RT_RAY_OCCLUSION];
     assert_int_equal(occlusion->count, diffuse->count);
     for (uint64_t i = 0; i < diffuse->count; i++) {
         RtRay ray = diffuse->rays[i];
@@ -184,9 +175,8 @@ RT_TEST(occlusion_rays_are_the_diffuse_ones) {
 }
 
 RT_TEST(random_rays_are_chords_between_uniform_points_of_the_sphere) {
-    const Stage *stage = *state;
-    const RtRaySet *set = &stage->sets[RT_RAY_RANDOM];
-    const RtBox *box = &stage->scene.geometry.box;
+    const RtRaySet *set = &stage.sets[RT_RAY_RANDOM];
+    const RtBox *box = &stage.scene.geometry.box;
     RtVec3d center = rt_widen(rt_box_center(*box));
     double radius = rt_lengthd(rt_subd(rt_widen(box->hi), center)), height = 0;
     RtVec3d mean[2] = {{0, 0, 0}, {0, 0, 0}};
@@ -204,8 +194,7 @@ RT_TEST(random_rays_are_chords_between_uniform_points_of_the_sphere) {
 }
 
 RT_TEST(thinning_keeps_every_nth_ray_and_a_limit_holds) {
-    const Stage *stage = *state;
-    const RtRaySet *set = &stage->sets[RT_RAY_PRIMARY]; /* 1850 */
+    const RtRaySet *set = &stage.sets[RT_RAY_PRIMARY]; /* 1850 */
     OWNED(rt_rayset_clear) RtRaySet thin;
     assert_ok(rt_rayset_thin(set, 3, &thin, error));
     assert_int_equal(thin.count, 617);
@@ -243,8 +232,7 @@ static void assert_runs(const RtRaySet *set, uint64_t limit, uint64_t asked, uin
 }
 
 RT_TEST(a_limit_keeps_runs_of_neighbours_together_all_over_the_set) {
-    const Stage *stage = *state;
-    const RtRaySet *set = &stage->sets[RT_RAY_PRIMARY]; /* 1850 */
+    const RtRaySet *set = &stage.sets[RT_RAY_PRIMARY]; /* 1850 */
     assert_runs(set, 1100, 16, 16, 2);
     assert_runs(set, 600, 5, 5, 4);
     assert_runs(set, 200, 256, 3, 10); /* 64 runs at least */
@@ -262,38 +250,35 @@ static void assert_blocks(const RtRaySet *set, uint64_t count, uint32_t columns)
 
 /* 50 x 37 samples contain 3 x 2 whole tiles of 256. */
 RT_TEST(primary_rays_come_in_blocks_of_neighbours_and_a_limit_keeps_them_whole) {
-    Stage *stage = *state;
     RtRaySet sets[RT_RAY_KIND_COUNT], kept;
     RtRecording recording = make_recording(1);
-    assert_blocks(&stage->sets[RT_RAY_PRIMARY], 3 * 2 * 256, 50);
-    assert_ok(rt_scene_sample(&stage->scene, 200, 200, 1, false, error));
-    assert_ok(rt_rayset_record(sets, stage->accel, &recording, error));
+    assert_blocks(&stage.sets[RT_RAY_PRIMARY], 3 * 2 * 256, 50);
+    assert_ok(rt_scene_sample(&stage.scene, 200, 200, 1, false, error));
+    assert_ok(rt_rayset_record(sets, stage.accel, &recording, error));
     assert_blocks(&sets[RT_RAY_PRIMARY], 200 * 200, 200);
     assert_ok(rt_rayset_limit(&sets[RT_RAY_PRIMARY], 15000, 200, &kept, error));
     assert_true(kept.count % 192 == 0 && kept.count > 12000); /* runs of 192 */
     assert_blocks(&kept, kept.count, 200);
     rt_rayset_clear(&kept);
     clear_sets(sets);
-    assert_ok(rt_scene_sample(&stage->scene, 50, 37, 1, false, error));
+    assert_ok(rt_scene_sample(&stage.scene, 50, 37, 1, false, error));
 }
 
 RT_TEST(every_allocation_of_a_recording_may_fail) {
-    Stage *stage = *state;
     RtRecording recording = make_recording(1);
-    assert_ok(rt_scene_sample(&stage->scene, 20, 20, 1, false, error));
+    assert_ok(rt_scene_sample(&stage.scene, 20, 20, 1, false, error));
     RtRaySet sets[RT_RAY_KIND_COUNT];
-    assert_fails_cleanly(rt_rayset_record(sets, stage->accel, &recording, error), clear_sets(sets));
-    assert_ok(rt_scene_sample(&stage->scene, 50, 37, 1, false, error));
+    assert_fails_cleanly(rt_rayset_record(sets, stage.accel, &recording, error), clear_sets(sets));
+    assert_ok(rt_scene_sample(&stage.scene, 50, 37, 1, false, error));
 }
 
 /* All bytes of rays are hashed: whatever memory held before, the file alone decides. */
 RT_TEST(rays_of_a_file_have_the_same_fingerprint_each_time_that_they_are_read) {
-    const Stage *stage = *state;
     char path[] = "/tmp/raytally-rays-XXXXXX";
     uint64_t fingerprints[2];
     int file = mkstemp(path);
     assert_true(file >= 0 && close(file) == 0);
-    RtRaySet few = stage->sets[RT_RAY_PRIMARY], read;
+    RtRaySet few = stage.sets[RT_RAY_PRIMARY], read;
     few.count = 10;
     assert_ok(rt_rays_save(&few, path, error));
     for (int i = 0; i < 2; i++) {

@@ -7,7 +7,6 @@
 #include "accel_testing.h"
 
 #include "render/frame.h"
-#include "render/illumination.h"
 
 #define assert_near(a, b, within) assert_true(fabs((double)(a) - (double)(b)) <= (within))
 

@@ -2,8 +2,6 @@
 /* render/: images, read back from their files. */
 #include "render_testing.h"
 
-#include "core/base/file.h"
-
 #include <png.h>
 #include <xxhash.h>
 
@@ -113,9 +111,7 @@ RT_TEST(a_file_that_cannot_be_written_is_a_status_and_leaves_nothing) {
     OWNED_FRAME frame = trace_red(4, 4);
     int64_t live = rt_alloc_live();
     const char *const folders[] = {RT_BINARY_DIR "/no such folder/a", RT_BINARY_DIR};
-    for (int i = 0; i < 2; i++) {
-        assert_fails_with(rt_png_write(&frame, folders[i], error), RT_IO, folders[i]);
-    }
+    for (int i = 0; i < 2; i++) assert_fails_with(rt_png_write(&frame, folders[i], error), RT_IO, folders[i]);
     assert_int_equal(rt_alloc_live(), live);
 }
 

@@ -128,9 +128,9 @@ RT_TEST_IN_PLACE(a_swept_value_that_gnuplot_would_run_is_refused_also_in_results
     json_t *manifest = json_object();
     write_changed(place, "small.yaml", swept, "grid:density=1..16*2",
                   "grid:mailbox=on,resolution=auto,empty_steps_stay=on,rule=woo|`harm`");
-    assert_bad_input(rt_experiment_load_from_manifest(place->experiment, path_in(place, "small.yaml").text,
-                                                      manifest, error),
-                     "rule=`harm`' cannot name");
+    assert_bad_input(
+        rt_experiment_load(place->experiment, path_in(place, "small.yaml").text, false, manifest, error),
+        "rule=`harm`' cannot name");
     json_decref(manifest);
 }
 

@@ -33,8 +33,9 @@ typedef struct RtArena {
     size_t failed_bytes; /* of the first block that failed; 0: unknown */
 } RtArena;
 
-/* An arena that is cleared when its scope ends. */
-#define RT_ARENA(name) __attribute__((cleanup(rt_arena_clear))) RtArena name = {0}
+/* A variable, {0}, and an arena that `clear`, given the address, frees when the scope ends. */
+#define RT_OWNED(Type, name, clear) __attribute__((cleanup(clear))) Type name = {0}
+#define RT_ARENA(name)              RT_OWNED(RtArena, name, rt_arena_clear)
 
 /* As rt_alloc and rt_alloc_unset, but the arena owns the block. NULL after a failure, also of an earlier
  * block. */

@@ -143,7 +143,7 @@ void rt_mesh_write_ply(const RtGeometry *g, FILE *file);
 void rt_mesh_write_stl(const RtGeometry *g, FILE *file);
 void rt_mesh_write_glb(const RtGeometry *g, FILE *file);
 
-/* A number of 4 bytes, low byte first, as in memory (core/text/npy.h); and three float32. */
+/* A number of 4 bytes, low byte first, as in memory; and three float32. */
 static inline uint32_t rt_mesh_u32(const void *at) {
     uint32_t number;
     memcpy(&number, at, sizeof number);
