@@ -4,7 +4,7 @@
 #include "cli/cli.h"
 #include "render/frame.h"
 #include "run/callgrind.h"
-#include "verify/spread.h"
+#include "verify/verify.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -6,9 +6,7 @@
 #include "core/scene/load.h"
 #include "core/scene/yaml.h"
 #include "measure/measure.h"
-#include "verify/ray_families.h"
-#include "verify/replay.h"
-#include "verify/spread.h"
+#include "verify/verify.h"
 
 #include <stdlib.h>
 #include <string.h>
