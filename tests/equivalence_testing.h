@@ -8,7 +8,7 @@
 
 #include "scenes/builtin.h"
 #include "verify/equivalence.h"
-#include "verify/ray_families.h"
+#include "verify/verify_rays.h"
 
 /* The number of the family of scenes that is called so. */
 static inline size_t scene_family(const char *name) {

@@ -488,10 +488,6 @@ void rt_claims_level(const RtResults *results, char out[RT_MAX_CLAIM_LEVEL]) {
                        count, 100 * coverage);
 }
 
-static void print_dropped(void *context, const char *claim) {
-    fprintf(context, "  %-15s  %s\n", "dropped since", claim);
-}
-
 void rt_claims_print(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     char level[RT_MAX_CLAIM_LEVEL];
@@ -507,7 +503,11 @@ void rt_claims_print(const RtResults *results, FILE *out) {
                 result.figures);
         open |= result.verdict == RT_CLAIM_UNDECIDED;
     }
-    rt_claims_dropped(results, print_dropped, out);
+    json_t *dropped = rt_claims_dropped(results), *text;
+    size_t k;
+    json_array_foreach(dropped, k, text)
+        fprintf(out, "  %-15s  %s\n", "dropped since", json_string_value(text));
+    json_decref(dropped);
     if (open)
         fprintf(out,
                 "  undecided: the interval includes the bound, a value is missing, fewer than %d rays were "

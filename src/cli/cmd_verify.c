@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally verify: does every accelerator answer every ray like brute? With --replay: is an answer still
- * wrong? The command line of verify/verify.h and verify/replay.h. */
+ * wrong? The command line of verify/verify.h and verify/failure.h. */
 #include "cli/cli.h"
 #include "cli/jobs.h"
 #include "core/base/clock.h"
@@ -10,8 +10,6 @@
 #include "measure/measure.h"
 #include "scenes/builtin.h"
 #include "scenes/open.h"
-#include "verify/replay.h"
-#include "verify/spread.h"
 #include "verify/verify.h"
 #include "verify/verify_table.h"
 

@@ -3,7 +3,7 @@
 
 #include "cli/cli.h"
 #include "run/callgrind.h"
-#include "verify/spread.h"
+#include "verify/verify.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -183,7 +183,8 @@ static RtStatus verify(RtVerifyScene *stage, const RtScene *scene, const RtVerif
     RtCertain certain = {0};
     RT_TRY(rt_verify_scene_init(stage, scene, wanted, error));
     RT_TRY(rt_accel_open_on(spec, &stage->scene, wanted->threads, &accel, error));
-    RT_TRY(rt_verify_scene_answer(stage, wanted, error));
+    RT_TRY(rt_reference_init(&stage->reference, stage->truth, stage->rays, wanted->count, wanted->threads,
+                             error));
     RT_TRY(rt_equivalence_check(&stage->reference, accel, wanted->threads, &result, error));
     if (!accel->exact)
         RT_TRY(rt_reference_certain(&stage->reference, accel->absolute, wanted->threads, &certain, error));

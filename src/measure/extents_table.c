@@ -26,18 +26,19 @@ static RtStatus find_population(Population *population, const RtGeometry *geomet
 
 /* ---- the extents of one object ---- */
 
-/* Fitted for one extent of any kind. */
+/* A set of one extent, of any kind, and its room. */
 typedef struct Fitted {
+    RtExtentSet set;
     RtBall ball;
     RtOrientedBox oriented;
     RtSlab slabs[RT_MAX_SLABS];
 } Fitted;
 
-static RtExtentSet fit(const RtGeometry *geometry, uint32_t id, RtExtentChoice choice, Fitted *fitted) {
-    RtExtentSet set = {choice.kind, 1, choice.slabs, &fitted->ball, &fitted->oriented, fitted->slabs};
+static void fit(const RtGeometry *geometry, uint32_t id, RtExtentChoice choice, Fitted *fitted) {
     const RtGroup group = {geometry, &id, 1, geometry->boxes[id]};
-    rt_extent_fit(&set, 0, &group);
-    return set;
+    fitted->set =
+        (RtExtentSet){choice.kind, 1, choice.slabs, &fitted->ball, &fitted->oriented, fitted->slabs};
+    rt_extent_fit(&fitted->set, 0, &group);
 }
 
 /* A sphere around object `id` and its extents of every kind, slightly enlarged. */
@@ -59,13 +60,10 @@ static RtBall sphere_about_extents(const RtGeometry *geometry, uint32_t id) {
 
 typedef struct Survey {
     const Population *population;
-    const RtExtentChoice *choices;
-    size_t count;
-    uint64_t seed;
+    const RtExtentsTable *table;
+    RtTightness *out;      /* [table->choice_count] */
     RtBall *spheres;       /* [population->count] */
-    Fitted *fitted;        /* [count] */
-    RtExtentSet *sets;     /* [count] */
-    RtTightness *out;      /* [count] */
+    Fitted *fitted;        /* [table->choice_count] */
     RtCrossing *crossings; /* of hit functions */
 } Survey;
 
@@ -81,18 +79,17 @@ static RtRay random_line(const RtBall *sphere, RtRandom *random) {
 static void count_lines(const Survey *survey, uint32_t index, uint64_t lines) {
     const RtGeometry *geometry = survey->population->geometry;
     uint32_t id = survey->population->ids[index];
-    RtRandom random = rt_random(survey->seed, id);
-    for (size_t c = 0; c < survey->count; c++) {
-        survey->sets[c] = fit(geometry, id, survey->choices[c], &survey->fitted[c]);
-    }
+    RtRandom random = rt_random(survey->table->seed, id);
+    for (size_t c = 0; c < survey->table->choice_count; c++)
+        fit(geometry, id, survey->table->choices[c], &survey->fitted[c]);
     for (uint64_t k = 0; k < lines; k++) {
         RtRay through = random_line(&survey->spheres[index], &random);
         RtPreparedRay ray;
         rt_hit_ray(&ray, geometry, &through, survey->crossings);
         RtHit hit = RT_MISS;
         bool met = rt_test_object(geometry, id, &ray, true, &hit, NULL);
-        for (size_t c = 0; c < survey->count; c++) {
-            const RtExtentSet *set = &survey->sets[c];
+        for (size_t c = 0; c < survey->table->choice_count; c++) {
+            const RtExtentSet *set = &survey->fitted[c].set;
             RtLine line = rt_line(set, set->kind, &geometry->box, &ray);
             float enter;
             survey->out[c].lines++;
@@ -105,18 +102,18 @@ static void count_lines(const Survey *survey, uint32_t index, uint64_t lines) {
 
 /* Distributes the lines by area, each part rounded up or down without bias. Returns the sum of the squared
  * radii. */
-static double deal_lines(const Survey *survey, uint64_t lines) {
+static double deal_lines(const Survey *survey) {
     uint32_t count = survey->population->count;
     double whole = 0, sum = 0;
     for (uint32_t i = 0; i < count; i++) {
         survey->spheres[i] = sphere_about_extents(survey->population->geometry, survey->population->ids[i]);
         whole += survey->spheres[i].radius * survey->spheres[i].radius;
     }
-    RtRandom random = rt_random(survey->seed, UINT64_MAX);
+    RtRandom random = rt_random(survey->table->seed, UINT64_MAX);
     double start = (double)rt_random_unit(&random);
     for (uint64_t i = 0, dealt = 0; whole > 0 && i < count; i++) {
         sum += survey->spheres[i].radius * survey->spheres[i].radius;
-        uint64_t until = (uint64_t)((double)lines * (sum / whole) + start);
+        uint64_t until = (uint64_t)((double)survey->table->lines * (sum / whole) + start);
         if (until > dealt) count_lines(survey, (uint32_t)i, until - dealt);
         dealt = until;
     }
@@ -134,23 +131,19 @@ static void estimate_tightness(RtTightness *out) {
     out->high = k > 0 ? 1 / (middle - half) : n > 0 ? (double)INFINITY : (double)NAN;
 }
 
-static RtStatus count_population(const Population *population, const RtExtentChoice *choices, size_t count,
-                                 uint64_t lines, uint64_t seed, RtTightness *out, RtArena *arena,
-                                 RtError *error) {
+static RtStatus count_population(const Population *population, const RtExtentsTable *table, RtTightness *out,
+                                 RtArena *arena, RtError *error) {
+    const size_t count = table->choice_count;
     Survey survey = {.population = population,
-                     .choices = choices,
-                     .count = count,
-                     .seed = seed,
+                     .table = table,
+                     .out = out,
                      .spheres = rt_arena_alloc(arena, population->count, sizeof(RtBall)),
-                     .fitted = rt_arena_alloc(arena, count, sizeof(Fitted)),
-                     .sets = rt_arena_alloc(arena, count, sizeof(RtExtentSet)),
-                     .out = out};
+                     .fitted = rt_arena_alloc(arena, count, sizeof(Fitted))};
     RT_TRY(rt_arena_check(arena, "the tightness of extents", error));
     RT_TRY(rt_crossings_alloc(population->geometry, &survey.crossings, error));
-    for (size_t c = 0; c < count; c++) out[c] = (RtTightness){0};
-    const double whole = deal_lines(&survey, lines);
+    const double whole = deal_lines(&survey);
     const RtBall scene = rt_bounding_sphere(&population->geometry->box);
-    const double lines_of_scene = (double)lines * (scene.radius * scene.radius / whole);
+    const double lines_of_scene = (double)table->lines * (scene.radius * scene.radius / whole);
     for (size_t c = 0; c < count; c++) {
         estimate_tightness(&out[c]);
         out[c].met = whole > 0 ? (double)out[c].extent_hits / lines_of_scene : 0;
@@ -159,26 +152,11 @@ static RtStatus count_population(const Population *population, const RtExtentCho
     return RT_OK;
 }
 
-RtStatus rt_tightness_count(const RtGeometry *geometry, RtShape shape, const RtExtentChoice *choices,
-                            size_t count, uint64_t lines, uint64_t seed, RtTightness *out, RtError *error) {
-    RT_ARENA(arena);
-    Population population;
-    RT_TRY(find_population(&population, geometry, shape, &arena, error));
-    return count_population(&population, choices, count, lines, seed, out, &arena, error);
-}
-
 /* ---- costs ---- */
 
 /* Objects whose extents are in the list, evenly spread over the population; lines that traverse it; rays for
  * object tests; attempts to draw those. */
-enum { SAMPLE = 256, LINES = 64, CHORDS = 512, TRIES = 8192 };
-
-typedef struct PreparedRays {
-    uint32_t count;
-    RtRay rays[CHORDS];
-    RtPreparedRay prepared[CHORDS];
-    uint32_t ids[CHORDS]; /* the object that each is for */
-} PreparedRays;
+enum { SAMPLE = 256, LINES = 64, CHORDS = 512, TRIES = 8192, ROUNDS = 20 };
 
 /* What all runners share. */
 typedef struct Bench {
@@ -186,10 +164,13 @@ typedef struct Bench {
     uint32_t count; /* objects sampled */
     uint32_t ids[SAMPLE];
     RtBox boxes[SAMPLE];
-    uint32_t met[SAMPLE];  /* extents that the last line hit, which a search would visit next */
-    PreparedRays lines;    /* through the scene */
-    PreparedRays chords;   /* that meet the box of their object */
-    RtCrossing *crossings; /* of hit functions */
+    uint32_t met[SAMPLE]; /* extents that the last line hit, which a search would visit next */
+    RtRay lines[LINES];   /* through the scene */
+    uint32_t chord_count;
+    RtRay chords[CHORDS]; /* that meet the box of their object */
+    RtPreparedRay prepared[CHORDS];
+    uint32_t objects[CHORDS]; /* of each chord */
+    RtCrossing *crossings;    /* of hit functions */
 } Bench;
 
 /* The extents of one choice. */
@@ -200,8 +181,8 @@ typedef struct Extents {
 
 RT_KERNEL void test_list(RtExtentKind kind, const Extents *extents) {
     Bench *bench = extents->bench;
-    for (uint32_t k = 0; k < bench->lines.count; k++) {
-        RtPreparedRay ray = rt_ray_prepare(&bench->lines.rays[k], &bench->geometry->box);
+    for (uint32_t k = 0; k < LINES; k++) {
+        RtPreparedRay ray = rt_ray_prepare(&bench->lines[k], &bench->geometry->box);
         RtLine line = rt_line(&extents->set, kind, &bench->geometry->box, &ray);
         uint32_t met = 0;
         for (uint32_t i = 0; i < bench->count; i++) {
@@ -224,20 +205,12 @@ static RtStatus run_objects(void *context, RtError *error) {
     (void)error;
     Bench *bench = context;
     uint32_t met = 0;
-    for (uint32_t k = 0; k < bench->chords.count; k++) {
+    for (uint32_t k = 0; k < bench->chord_count; k++) {
         RtHit hit = RT_MISS;
-        const RtPreparedRay *ray = &bench->chords.prepared[k];
-        met += rt_test_object(bench->geometry, bench->chords.ids[k], ray, true, &hit, NULL);
+        met += rt_test_object(bench->geometry, bench->objects[k], &bench->prepared[k], true, &hit, NULL);
     }
     bench->met[0] = met;
     return RT_OK;
-}
-
-static void add_ray(PreparedRays *to, const RtGeometry *geometry, const RtRay *ray, RtCrossing *crossings,
-                    uint32_t id) {
-    to->rays[to->count] = *ray;
-    rt_hit_ray(&to->prepared[to->count], geometry, &to->rays[to->count], crossings);
-    to->ids[to->count++] = id;
 }
 
 static void fill_bench(Bench *bench, const Population *population, uint64_t seed) {
@@ -250,24 +223,39 @@ static void fill_bench(Bench *bench, const Population *population, uint64_t seed
         bench->ids[i] = id;
         bench->boxes[i] = geometry->boxes[id];
     }
-    for (uint32_t k = 0; k < TRIES && bench->chords.count < CHORDS; k++) {
+    for (uint32_t k = 0; k < TRIES && bench->chord_count < CHORDS; k++) {
         uint32_t id = bench->ids[k % bench->count];
         RtBall sphere = sphere_about_extents(geometry, id);
-        RtRay ray = rt_sphere_chord(&sphere, &random);
-        RtPreparedRay prepared = rt_ray_prepare(&ray, &geometry->box);
+        RtRay *ray = &bench->chords[bench->chord_count];
+        *ray = rt_sphere_chord(&sphere, &random);
+        RtPreparedRay prepared = rt_ray_prepare(ray, &geometry->box);
         float enter;
-        bool met = rt_box_hit(&geometry->boxes[id], &prepared, prepared.tmax, &enter);
-        if (met) add_ray(&bench->chords, geometry, &ray, bench->crossings, id);
+        if (!rt_box_hit(&geometry->boxes[id], &prepared, prepared.tmax, &enter)) continue;
+        rt_hit_ray(&bench->prepared[bench->chord_count], geometry, ray, bench->crossings);
+        bench->objects[bench->chord_count++] = id;
     }
-    for (uint32_t k = 0; k < LINES; k++) {
-        RtRay ray = rt_random_chord(&geometry->box, &random);
-        add_ray(&bench->lines, geometry, &ray, bench->crossings, RT_NO_OBJECT);
+    for (uint32_t k = 0; k < LINES; k++) bench->lines[k] = rt_random_chord(&geometry->box, &random);
+}
+
+/* T of one choice in every round, to `out`. */
+static void weigh(const double test[ROUNDS], const double object[ROUNDS], double tests, double met,
+                  double out[ROUNDS]) {
+    for (uint32_t r = 0; r < ROUNDS; r++) out[r] = tests * test[r] + met * object[r];
+}
+
+/* `times` of each choice, then of the object test. */
+static void conclude(double (*times)[ROUNDS], size_t count, RtExtentsOfShape *of) {
+    double first[ROUNDS], own[ROUNDS];
+    weigh(times[0], times[count], of->objects, of->tightness[0].met, first);
+    for (size_t c = 0; c < count; c++) {
+        weigh(times[c], times[count], of->objects, of->tightness[c].met, own);
+        of->cost[c] = (RtExtentCost){rt_estimate(times[c], ROUNDS), rt_estimate(own, ROUNDS),
+                                     rt_estimate_ratio(own, first, ROUNDS)};
     }
 }
 
-static RtStatus fit_extents(Extents *extents, Bench *bench, RtExtentChoice choice, RtArena *arena,
-                            RtError *error) {
-    extents->bench = bench;
+static RtStatus fit_all(Extents *extents, RtExtentChoice choice, RtArena *arena, RtError *error) {
+    const Bench *bench = extents->bench;
     RT_TRY(rt_extent_set_init(&extents->set, arena, choice.kind, choice.slabs, bench->count, error));
     for (uint32_t i = 0; i < bench->count; i++) {
         const RtGroup group = {bench->geometry, &bench->ids[i], 1, bench->boxes[i]};
@@ -276,63 +264,34 @@ static RtStatus fit_extents(Extents *extents, Bench *bench, RtExtentChoice choic
     return RT_OK;
 }
 
-/* Times of the rounds: [count] rows of B, then one of I, then room for two of T. */
-typedef struct Times {
-    const RtRounds *rounds;
-    double *seconds;
-    size_t count;
-} Times;
-
-static double *row(const Times *times, size_t i) {
-    return times->seconds + i * times->rounds->rounds;
-}
-
-/* T of one choice in every round, to `out`. */
-static void weigh(const Times *times, size_t choice, double tests, double met, double *out) {
-    for (uint32_t r = 0; r < times->rounds->rounds; r++) {
-        out[r] = tests * row(times, choice)[r] + met * row(times, times->count)[r];
-    }
-}
-
-static void conclude(const Times *times, const Population *population, const RtTightness *tightness,
-                     RtExtentCost *out) {
-    uint32_t rounds = times->rounds->rounds;
-    double *first = row(times, times->count + 1), *own = row(times, times->count + 2);
-    weigh(times, 0, population->count, tightness[0].met, first);
-    for (size_t c = 0; c < times->count; c++) {
-        weigh(times, c, population->count, tightness[c].met, own);
-        out[c] = (RtExtentCost){rt_estimate(row(times, c), rounds), rt_estimate(own, rounds),
-                                rt_estimate_ratio(own, first, rounds)};
-    }
-}
-
-/* Times what was counted: tightness[i] and out[i] are for choices[i]. The population is not empty. */
-static RtStatus time_population(const Population *population, const RtExtentChoice *choices, size_t count,
-                                const RtTightness *tightness, RtEstimate *object, RtExtentCost *out,
-                                RtArena *arena, RtError *error) {
-    static const RtRounds rounds = {.rounds = 20, .most = 20, .least = 1e-3, .seed = 1};
+/* Times what was counted. The population is not empty. */
+static RtStatus time_population(const Population *population, const RtExtentsTable *table,
+                                RtExtentsOfShape *of, RtArena *arena, RtError *error) {
+    const size_t count = table->choice_count;
+    static const RtRounds rounds = {.rounds = ROUNDS, .most = ROUNDS, .least = 1e-3, .seed = 1};
     Bench *bench = rt_arena_alloc(arena, 1, sizeof(Bench));
     Extents *extents = rt_arena_alloc(arena, count, sizeof(Extents));
     RtRunner *runners = rt_arena_alloc(arena, count + 1, sizeof(RtRunner));
-    const Times times = {&rounds, rt_arena_alloc(arena, (count + 3) * rounds.rounds, sizeof(double)), count};
+    double(*times)[ROUNDS] = rt_arena_alloc(arena, count + 1, sizeof *times);
     RT_TRY(rt_arena_check(arena, "timing extents", error));
     RT_TRY(rt_crossings_alloc(population->geometry, &bench->crossings, error));
     fill_bench(bench, population, rounds.seed);
     RtStatus status = RT_OK;
     for (size_t c = 0; status == RT_OK && c < count; c++) {
-        status = fit_extents(&extents[c], bench, choices[c], arena, error);
+        extents[c].bench = bench;
+        status = fit_all(&extents[c], table->choices[c], arena, error);
         runners[c] = (RtRunner){.run = run_extents,
                                 .context = &extents[c],
                                 .work = (double)bench->count * LINES,
-                                .seconds = row(&times, c)};
+                                .seconds = times[c]};
     }
-    const bool any = bench->chords.count > 0;
+    const bool any = bench->chord_count > 0;
     uint32_t done;
-    runners[count] = (RtRunner){
-        .run = run_objects, .context = bench, .work = bench->chords.count, .seconds = row(&times, count)};
+    runners[count] =
+        (RtRunner){.run = run_objects, .context = bench, .work = bench->chord_count, .seconds = times[count]};
     if (status == RT_OK) status = rt_rounds_run(runners, count + any, &rounds, &done, error);
-    if (status == RT_OK) conclude(&times, population, tightness, out);
-    *object = any ? rt_estimate(row(&times, count), rounds.rounds) : rt_estimate_exactly((double)NAN);
+    if (status == RT_OK) conclude(times, count, of);
+    of->object = any ? rt_estimate(times[count], ROUNDS) : rt_estimate_exactly((double)NAN);
     rt_free(bench->crossings);
     return status;
 }
@@ -342,8 +301,8 @@ static RtStatus time_population(const Population *population, const RtExtentChoi
 static const char *const kind_names[RT_EXTENT_KIND_COUNT] = {"box", "sphere", "obb", "slabs"};
 
 static void choose(RtExtentsTable *table, bool every_slabs) {
-    static const RtExtentKind plain[] = {RT_EXTENT_BOX, RT_EXTENT_SPHERE, RT_EXTENT_OBB};
-    for (int i = 0; i < 3; i++) table->choices[table->choice_count++] = (RtExtentChoice){plain[i], 0};
+    static const RtExtentChoice plain[] = {{RT_EXTENT_BOX, 0}, {RT_EXTENT_SPHERE, 0}, {RT_EXTENT_OBB, 0}};
+    for (int i = 0; i < 3; i++) table->choices[table->choice_count++] = plain[i];
     for (uint32_t slabs = 3; slabs <= RT_MAX_SLABS; slabs++) {
         if (!every_slabs && slabs != 3 && slabs != 7 && slabs != 13) continue;
         table->choices[table->choice_count++] = (RtExtentChoice){RT_EXTENT_SLABS, slabs};
@@ -362,10 +321,8 @@ RtStatus rt_extents_table(RtExtentsTable *table, const RtScene *scene, bool ever
         RtExtentsOfShape *of = &table->shapes[table->shape_count++];
         of->shape = (RtShape)shape;
         of->objects = population.count;
-        RT_TRY(count_population(&population, table->choices, table->choice_count, lines, seed, of->tightness,
-                                &arena, error));
-        RT_TRY(time_population(&population, table->choices, table->choice_count, of->tightness, &of->object,
-                               of->cost, &arena, error));
+        RT_TRY(count_population(&population, table, of->tightness, &arena, error));
+        RT_TRY(time_population(&population, table, of, &arena, error));
     }
     return RT_OK;
 }

@@ -32,6 +32,7 @@ typedef struct RtExtentChoice {
     uint32_t slabs; /* plane sets, 3..RT_MAX_SLABS; 0 for the other kinds */
 } RtExtentChoice;
 
+/* Of the objects of one shape, or of all; with the same lines for each extent. */
 typedef struct RtTightness {
     uint64_t lines, extent_hits, object_hits;
     double ratio, low, high; /* tightness and its 95 % interval. If no object is hit (triangles without
@@ -40,11 +41,6 @@ typedef struct RtTightness {
     double met; /* mean number of extents of these objects that a random line through the scene's bounding
                    sphere hits */
 } RtTightness;
-
-/* Counts the hits of `lines` lines with the objects of one shape of a finished geometry, or with all of them
- * (RT_SHAPE_COUNT); out[i] is for choices[i], with the same lines. */
-RtStatus rt_tightness_count(const RtGeometry *geometry, RtShape shape, const RtExtentChoice *choices,
-                            size_t count, uint64_t lines, uint64_t seed, RtTightness *out, RtError *error);
 
 typedef struct RtExtentCost {
     RtEstimate test;  /* B, seconds */

@@ -3,7 +3,6 @@
  * entries are then put together in the order of sections. */
 #include "report/report.h"
 
-#include "claims/claims.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
@@ -30,7 +29,6 @@ typedef struct Entry {
     char plot[RT_MAX_PATH]; /* seen from the index, or "" */
     bool has_report;
     uint32_t number;
-    RtMemoryFile verdict; /* HTML */
 } Entry;
 
 typedef struct Index {
@@ -39,7 +37,7 @@ typedef struct Index {
     bool inner;               /* in one of the folder's folders */
     Entry *entries;           /* owned */
     uint32_t count, capacity;
-    json_t *papers; /* of all */
+    json_t *papers, *verdicts; /* of all; {name: claims} */
     RtStatus status;
     RtError *error;
 } Index;
@@ -116,7 +114,7 @@ static RtStatus read_experiment(Index *index, Entry *entry, const char *director
         note_origin(entry, manifest);
         strcpy(entry->question, experiment->question);
         snprintf(entry->answer, MAX_ANSWER, "%.*s", first_sentence(finding), finding);
-        rt_page_verdict(entry->verdict.file, &results);
+        json_object_set_new(index->verdicts, entry->name, rt_page_claims(&results));
         json_t *papers = rt_page_papers(experiment);
         json_array_extend(index->papers, papers);
         json_decref(papers);
@@ -167,36 +165,26 @@ static RtStatus read_verification(Entry *entry, const char *directory, RtError *
 }
 
 /* A directory that cannot be read has the reason as its answer. */
-static RtStatus read_entry(Index *index, Entry *entry, const char *directory, const char *place) {
+static void add_entry(Index *index, const char *directory) {
+    const char *place = directory + strlen(index->folder) + 1;
     RtError why = {RT_OK, ""};
-    *entry = (Entry){.number = index->count};
+    index->status = rt_reserve(&index->entries, &index->capacity, index->count + UINT64_C(1), sizeof(Entry),
+                               index->error);
+    if (index->status != RT_OK) return;
+    Entry *entry = &index->entries[index->count];
+    *entry = (Entry){.number = index->count++};
     snprintf(entry->name, sizeof entry->name, "%s", place);
-    RT_TRY(rt_memory_file_open(&entry->verdict, index->error));
     if ((is_verification(directory) ? read_verification(entry, directory, &why)
                                     : read_experiment(index, entry, directory, &why)) != RT_OK)
         snprintf(entry->answer, MAX_ANSWER, "Cannot be read: %s", why.message);
     find_plot(entry, directory, place);
     entry->has_report = rt_file_exists_in(directory, "report.html");
-    return rt_memory_file_close(&entry->verdict, "the index", index->error);
-}
-
-/* ., .. and hidden folders. */
-static bool is_hidden(const char *path) {
-    return basename(path)[0] == '.';
-}
-
-static void add_entry(Index *index, const char *directory) {
-    index->status = rt_reserve(&index->entries, &index->capacity, index->count + UINT64_C(1), sizeof(Entry),
-                               index->error);
-    if (index->status == RT_OK)
-        index->status = read_entry(index, &index->entries[index->count], directory,
-                                   directory + strlen(index->folder) + 1);
-    if (index->status == RT_OK) index->count++;
 }
 
 static void visit(void *context, const char *path) {
     Index *index = context;
-    if (is_hidden(path) || index->status != RT_OK) return;
+    const bool hidden = basename(path)[0] == '.'; /* ., .. and hidden folders */
+    if (hidden || index->status != RT_OK) return;
     if (is_entry(path)) {
         add_entry(index, path);
     } else if (!index->inner) {
@@ -222,12 +210,6 @@ static int compare(const void *a, const void *b) {
     const Entry *x = a, *y = b;
     const int order = order_of(x->section) - order_of(y->section), names = strcmp(x->section, y->section);
     return order ? order : names ? names : x->number < y->number ? -1 : 1;
-}
-
-/* The title of a section: with a capital. */
-static void title_of(const char *section, char title[RT_MAX_WORD]) {
-    snprintf(title, RT_MAX_WORD, "%s", *section ? section : "others");
-    title[0] = (char)toupper((unsigned char)title[0]);
 }
 
 /* "Measured by raytally 0.1.0 (abc); raytally 0.2.0 (def): one, two; ...": the most frequent value of
@@ -271,11 +253,8 @@ static void put_card(const Entry *entry, FILE *out) {
         rt_page_link(out, path, entry->name);
     else
         rt_html_put(out, entry->name);
-    fputs("</h3>\n<p>", out);
-    rt_html_markup(out, entry->question);
-    fputs("</p>\n<p><strong>", out);
-    rt_html_markup(out, entry->answer);
-    fprintf(out, "</strong></p>\n%s</div></section>\n", entry->verdict.data);
+    rt_html_wrap(out, "</h3>\n<p>", entry->question, "</p>\n<p><strong>");
+    rt_html_wrap(out, "", entry->answer, "</strong></p>\n</div></section>\n");
 }
 
 static void put_row(const Entry *entry, FILE *out) {
@@ -314,7 +293,8 @@ static RtStatus put_pages(const Index *index, FILE *html, FILE *markdown, RtErro
         const Entry *entry = &index->entries[i];
         if (i == 0 || strcmp(entry[-1].section, entry->section) != 0) {
             char title[RT_MAX_WORD];
-            title_of(entry->section, title);
+            snprintf(title, sizeof title, "%s", *entry->section ? entry->section : "others");
+            title[0] = (char)toupper((unsigned char)title[0]);
             rt_html_wrap(html, "<h2>", title, "</h2>\n");
             fputs("\n## ", markdown);
             put_markdown(markdown, title);
@@ -323,7 +303,8 @@ static RtStatus put_pages(const Index *index, FILE *html, FILE *markdown, RtErro
         put_card(entry, html);
         put_row(entry, markdown);
     }
-    return rt_page_end(json_pack("{s:O}", "papers", index->papers), html, error);
+    return rt_page_end(json_pack("{s:O, s:O}", "papers", index->papers, "verdicts", index->verdicts), html,
+                       error);
 }
 
 static RtStatus write_pages(Index *index, RtError *error) {
@@ -348,12 +329,13 @@ RtStatus rt_index_write(const char *folder, size_t *count, RtError *error) {
     Index index = {.folder = plain,
                    .experiment = rt_alloc(1, sizeof(RtExperiment)),
                    .papers = json_array(),
+                   .verdicts = json_object(),
                    .error = error};
     if (!index.experiment) return rt_fail_memory(error, "an experiment", sizeof(RtExperiment));
     rt_directory_each(plain, "", visit, &index);
     if (index.status == RT_OK) index.status = write_pages(&index, error);
-    for (uint32_t i = 0; i < index.count; i++) rt_free(index.entries[i].verdict.data);
     json_decref(index.papers);
+    json_decref(index.verdicts);
     rt_free(index.entries);
     rt_free(index.experiment);
     *count = index.count;

@@ -2,12 +2,10 @@
 #include "report/page.h"
 
 #include "claims/claims.h"
-#include "core/base/words.h"
 #include "page_css.h"
 #include "page_js.h"
 
 #include <ctype.h>
-#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -87,18 +85,16 @@ void rt_page_link(FILE *out, const char *file, const char *text) {
 
 /* ---- text ---- */
 
-static void put_character(FILE *out, char c) {
-    switch (c) {
-    case '<': fputs("&lt;", out); break;
-    case '>': fputs("&gt;", out); break;
-    case '&': fputs("&amp;", out); break;
-    case '"': fputs("&quot;", out); break;
-    default: fputc(c, out);
-    }
-}
-
 void rt_html_put(FILE *out, const char *text) {
-    for (; text && *text; text++) put_character(out, *text);
+    for (; text && *text; text++) {
+        switch (*text) {
+        case '<': fputs("&lt;", out); break;
+        case '>': fputs("&gt;", out); break;
+        case '&': fputs("&amp;", out); break;
+        case '"': fputs("&quot;", out); break;
+        default: fputc(*text, out);
+        }
+    }
 }
 
 void rt_html_wrap(FILE *out, const char *before, const char *text, const char *after) {
@@ -107,81 +103,27 @@ void rt_html_wrap(FILE *out, const char *before, const char *text, const char *a
     fputs(after, out);
 }
 
-void rt_html_markup(FILE *out, const char *text) {
-    bool code = false, bold = false;
-    for (; *text; text++) {
-        if (*text == '`' && (code || strchr(text + 1, '`'))) {
-            fputs((code = !code) ? "<code>" : "</code>", out);
-        } else if (text[0] == '*' && text[1] == '*' && (bold || strstr(text + 2, "**"))) {
-            fputs((bold = !bold) ? "<b>" : "</b>", out);
-            text++;
-        } else {
-            put_character(out, *text);
-        }
-    }
-}
-
 void rt_page_card(FILE *out, const char *title, const char *text) {
     if (!*text) return;
-    fprintf(out, "<section class=\"card\"><h2>%s</h2><p>", title);
-    rt_html_markup(out, text);
-    fputs("</p></section>\n", out);
+    fprintf(out, "<section class=\"card\"><h2>%s</h2>", title);
+    rt_html_wrap(out, "<p>", text, "</p></section>\n");
 }
 
-static void put_dropped(void *context, const char *claim) {
-    rt_html_wrap(context, "<li><span class=\"verdict open\">dropped after the run began</span> ", claim,
-                 "</li>\n");
-}
-
-void rt_page_claims(FILE *out, const RtResults *results) {
-    static const char *const classes[] = {[RT_CLAIM_HOLDS] = "holds",
-                                          [RT_CLAIM_UNDECIDED] = "open",
-                                          [RT_CLAIM_FALSE] = "false",
-                                          [RT_CLAIM_UNMEASURED] = "open",
-                                          [RT_CLAIM_FIGURE] = "readout"};
+json_t *rt_page_claims(const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
+    json_t *claims = json_array();
     char level[RT_MAX_CLAIM_LEVEL];
-    fputs("<ul class=\"claims\">", out);
     for (uint32_t i = 0; i < experiment->claim_count; i++) {
         RtClaimResult result;
         rt_claim_judge(results, i, &result);
-        fprintf(out, "<li><span class=\"verdict %s\">%s</span> ", classes[result.verdict],
-                rt_claim_verdict_name(result.verdict));
-        rt_html_put(out, experiment->claims[i]);
-        if (rt_claim_is_later(results, i))
-            fputs(" <span class=\"verdict open\">" RT_CLAIM_LATER "</span>", out);
-        rt_html_wrap(out, "<small>", result.figures, "</small></li>\n");
+        json_array_append_new(claims,
+                              json_pack("{s:s, s:s, s:s, s:s}", "text", experiment->claims[i], "verdict",
+                                        rt_claim_verdict_name(result.verdict), "figures", result.figures,
+                                        "later", rt_claim_is_later(results, i) ? RT_CLAIM_LATER : ""));
     }
-    rt_claims_dropped(results, put_dropped, out);
-    fputs("</ul>\n", out);
     rt_claims_level(results, level);
-    if (*level) rt_html_wrap(out, "<p class=\"meta\">", level, "</p>\n");
-}
-
-void rt_page_verdict(FILE *out, const RtResults *results) {
-    uint32_t counts[RT_CLAIM_VERDICT_COUNT] = {0}, claims = results->experiment->claim_count;
-    for (uint32_t i = 0; i < claims; i++) {
-        RtClaimResult result;
-        rt_claim_judge(results, i, &result);
-        counts[result.verdict]++;
-    }
-    claims -= counts[RT_CLAIM_FIGURE];
-    const uint32_t wrong = counts[RT_CLAIM_FALSE], open = counts[RT_CLAIM_UNDECIDED];
-    const uint32_t unmeasured = counts[RT_CLAIM_UNMEASURED];
-    fprintf(out, "<span class=\"verdict %s\">",
-            wrong                           ? "false"
-            : open || unmeasured || !claims ? "open"
-                                            : "holds");
-    if (!claims) {
-        fputs("not judged", out);
-    } else {
-        fprintf(out, "%" PRIu32 " of %" PRIu32 " claim%s hold%s", counts[RT_CLAIM_HOLDS], claims,
-                rt_plural(claims), claims == 1 ? "s" : "");
-    }
-    if (wrong) fprintf(out, ", %" PRIu32 " do%s not", wrong, wrong == 1 ? "es" : "");
-    if (open) fprintf(out, ", %" PRIu32 " undecided", open);
-    if (unmeasured) fprintf(out, ", %" PRIu32 " without measurements", unmeasured);
-    fputs("</span>\n", out);
+    return json_pack("{s:o, s:o, s:s}", "claims", claims, "dropped", rt_claims_dropped(results), "level",
+                     level);
 }
 
 json_t *rt_page_papers(const RtExperiment *experiment) {

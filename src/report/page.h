@@ -26,20 +26,16 @@ void rt_page_lines(FILE *out, const char *const *lines);
 /* `size` bytes at `data` as a data URL in base64, `type` being "image/png" and the like. */
 void rt_page_data_url(FILE *out, const char *type, const void *data, size_t size);
 
-/* Writes text as HTML, escaped; NULL is "". The same between `before` and `after`, which are HTML. The same
- * with `code` and **bold** as in Markdown. */
+/* Writes text as HTML, escaped; NULL is "". The same between `before` and `after`, which are HTML. In
+ * paragraphs of cards page.js makes elements of `code` and **bold**, as in Markdown. */
 void rt_html_put(FILE *out, const char *text);
 void rt_html_wrap(FILE *out, const char *before, const char *text, const char *after);
-void rt_html_markup(FILE *out, const char *text);
 
-/* A heading with text below, which may have `code`; nothing if the text is empty. */
+/* A heading with text below; nothing if the text is empty. */
 void rt_page_card(FILE *out, const char *title, const char *text);
 
-/* The claims of the experiment as a list, each with its verdict and its figures. */
-void rt_page_claims(FILE *out, const RtResults *results);
-
-/* "3 of 4 claims hold, 1 does not", in the colour of the worst verdict; or that there are no claims. */
-void rt_page_verdict(FILE *out, const RtResults *results);
+/* The claims of the experiment with their verdicts and figures, as data. */
+json_t *rt_page_claims(const RtResults *results);
 
 /* The sentences of the literature that the experiment tests, as data. */
 json_t *rt_page_papers(const RtExperiment *experiment);

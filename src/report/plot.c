@@ -348,39 +348,25 @@ static void put_variables(const RtResults *results, const char *shared, const ch
 
 /* ---- gnuplot ---- */
 
-/* Gnuplot's messages, for rt_free(). */
-static RtStatus read_log(const char *directory, char **log, size_t *size, RtError *error) {
-    enum { MOST_BYTES = 1 << 24 };
-    char path[RT_MAX_PATH];
+/* Whether gnuplot drew everything: it only warns of a file that it could not open. Else reports the end of
+ * its log, which names the script and the line; if that is empty, the scripts. */
+static RtStatus check_drawing(int code, char **arguments, const char *directory, RtError *error) {
+    enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
+    char path[RT_MAX_PATH], scripts[MOST_SHOWN] = "", *log;
+    size_t size;
     RT_TRY(rt_path_join(directory, "plots/gnuplot.log", path, error));
-    return rt_file_read(path, MOST_BYTES, log, size, error);
-}
-
-/* Reports the end of gnuplot's log, which names the script and the line; if it is empty, the scripts. */
-static RtStatus fail_drawing(char **arguments, const char *directory, RtError *error) {
-    enum { MOST_SHOWN = 600 };
-    char scripts[MOST_SHOWN] = "", *log = NULL;
-    size_t size = 0;
+    RT_TRY(rt_file_read(path, MOST_BYTES, &log, &size, error));
+    const bool drawn = code == 0 && !strstr(log, "Cannot find or open file");
     for (char **script = arguments + 4; *script; script++) /* without those that are always there */
         rt_append_text(scripts, sizeof scripts, " %s", *script);
-    RT_TRY(read_log(directory, &log, &size, error));
     while (size > 0 && isspace((unsigned char)log[size - 1])) log[--size] = '\0';
     const char *last = size > MOST_SHOWN ? log + size - MOST_SHOWN : log;
     while (isspace((unsigned char)*last)) last++;
-    rt_fail(error, RT_MISMATCH, "%s: gnuplot failed%s%s", directory,
-            *last ? ":\n" : " without a message; its scripts:", *last ? last : scripts);
+    if (!drawn)
+        rt_fail(error, RT_MISMATCH, "%s: gnuplot failed%s%s", directory,
+                *last ? ":\n" : " without a message; its scripts:", *last ? last : scripts);
     rt_free(log);
-    return RT_MISMATCH;
-}
-
-/* Whether gnuplot drew without a file that it could not open, of which it only warns. */
-static bool lacks_data(const char *directory) {
-    char *log = NULL;
-    size_t size;
-    if (read_log(directory, &log, &size, NULL) != RT_OK) return true;
-    const bool lacks = strstr(log, "Cannot find or open file");
-    rt_free(log);
-    return lacks;
+    return drawn ? RT_OK : RT_MISMATCH;
 }
 
 /* Runs gnuplot in `directory` with the scripts as arguments, its messages going to plots/gnuplot.log. */
@@ -395,7 +381,7 @@ static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *er
             "gnuplot is not installed, so no plots were drawn; `raytally plot %s` draws them later",
             directory);
     RT_TRY(status);
-    return end.code == 0 && !lacks_data(directory) ? RT_OK : fail_drawing(arguments, directory, error);
+    return check_drawing(end.code, arguments, directory, error);
 }
 
 /* gnuplot does not say when the disk is full: whether the file ends as files in its format do. */

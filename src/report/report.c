@@ -254,25 +254,9 @@ static RtStatus write_tables(const RtResults *results, const char *directory, co
     return rt_output_commit(&output, error);
 }
 
-static RtStatus write_paper_tables(const RtResults *results, const char *directory, RtError *error) {
-    RT_TRY(write_tables(results, directory, "tables.md", false, error));
-    return write_tables(results, directory, "tables.tex", true, error);
-}
-
 /* ---- report.html ---- */
 
 enum { MOST_FILE_BYTES = 1 << 26 };
-
-/* The verdict comes before the prediction. */
-static void put_claims(FILE *out, const RtResults *results) {
-    fputs("<section class=\"card\" id=\"verdict\"><h2>Verdict</h2><p>", out);
-    rt_page_verdict(out, results);
-    if (!results->experiment->claim_count)
-        fputs(" The prediction states no claims (<code>expect</code>) to check.", out);
-    fputs("</p>\n", out);
-    rt_page_claims(out, results);
-    fputs("</section>\n", out);
-}
 
 static void put_links(FILE *out, const char *directory) {
     fputs("<nav class=\"here\" aria-label=\"Files\"><span class=\"meta\">Data:</span> ", out);
@@ -291,39 +275,7 @@ typedef struct Plots {
     const char *shown; /* the file name of a plot shown elsewhere on the page, or NULL */
 } Plots;
 
-/* Its size in pixels: gnuplot writes viewBox="0 0 WIDTH HEIGHT". */
-static void read_size(const char *svg, int *width, int *height) {
-    static const char box[] = "viewBox=\"0 0 ";
-    const char *at = strstr(svg, box);
-    char *end = NULL;
-    *width = at ? (int)strtol(at + strlen(box), &end, 10) : 0;
-    *height = end ? (int)strtol(end, NULL, 10) : 0;
-    if (*width > 0 && *height > 0) return;
-    *width = 960;
-    *height = 480;
-}
-
-static void put_svg(FILE *out, const char *svg, size_t size, const char *name, const char *caption) {
-    int width, height;
-    read_size(svg, &width, &height);
-    /* The first sentence of the caption. */
-    const char *end = strstr(caption, ". ");
-    size_t length = end ? (size_t)(end - caption) : strlen(caption);
-    if (length > 0 && caption[length - 1] == '.') length--;
-    fprintf(
-        out,
-        "<figure><div class=\"plot\" style=\"--w:%dpx\" tabindex=\"0\" role=\"region\" aria-label=\"plot ",
-        width);
-    rt_html_put(out, name);
-    fprintf(out, "\"><img width=\"%d\" height=\"%d\" alt=\"Plot: ", width, height);
-    char text[RT_MAX_CAPTION];
-    snprintf(text, sizeof text, "%.*s", (int)length, caption);
-    rt_html_wrap(out, "", *text ? text : name,
-                 ". Its figures are in the tables and files of this page.\" src=\"");
-    rt_page_data_url(out, "image/svg+xml", svg, size);
-    fputs("\"></div>", out);
-}
-
+/* page.js gives it its size. */
 static void put_plot(void *context, const char *path) {
     const Plots *plots = context;
     const char *file = basename(path);
@@ -334,9 +286,13 @@ static void put_plot(void *context, const char *path) {
     snprintf(pdf, sizeof pdf, "plots/%s.pdf", name);
     rt_plot_caption(plots->experiment, plots->directory, name, caption);
     if (rt_file_read(path, MOST_FILE_BYTES, &svg, &size, NULL) != RT_OK) return;
-    put_svg(plots->out, svg, size, name, caption);
+    rt_html_wrap(plots->out, "<figure><div class=\"plot\" tabindex=\"0\" role=\"region\" aria-label=\"plot ",
+                 name, "\">");
+    rt_html_wrap(plots->out, "<img alt=\"Plot ", name,
+                 ". Its figures are in the tables and files of this page.\" src=\"");
+    rt_page_data_url(plots->out, "image/svg+xml", svg, size);
     rt_free(svg);
-    rt_html_wrap(plots->out, "<figcaption>", *caption ? caption : name, "");
+    rt_html_wrap(plots->out, "\"></div><figcaption>", *caption ? caption : name, "");
     if (rt_file_exists_in(plots->directory, pdf)) {
         fputc(' ', plots->out);
         rt_page_link(plots->out, pdf, "PDF");
@@ -379,27 +335,10 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
     fputs("</div>\n", out);
 }
 
-static const char *dot_of_candidate(const RtExperiment *experiment, uint32_t candidate) {
-    static char color[RT_COLOR_CHARS]; /* until the next row */
-    rt_candidate_color(experiment, candidate, color);
-    return color;
-}
-
-static const char *dot_of(const void *row) {
-    const RtResultRow *r = row;
-    return dot_of_candidate(r->results->experiment, r->candidate);
-}
-
-static const char *frame_dot_of(const void *row) {
-    const RtFrameRow *r = row;
-    return dot_of_candidate(r->results->experiment, r->candidate);
-}
-
 static json_t *table_of(const RtResults *results, uint32_t t, RtResultTable which, const char *caption) {
     RtResultRow row = {.results = results, .workload = t};
     RtTable table = rt_result_table(which, &row);
     table.caption = caption;
-    table.color = dot_of;
     return rt_table_page(&table);
 }
 
@@ -441,7 +380,6 @@ static json_t *frames_of(const RtResults *results) {
         rt_frame_title(results, t, text);
         snprintf(caption, sizeof caption, "%s: %s", results->experiment->workloads[t].label, text);
         table.caption = caption;
-        table.color = frame_dot_of;
         json_array_append_new(frames, rt_table_page(&table));
     }
     return frames;
@@ -452,20 +390,26 @@ static json_t *data_of(const RtResults *results, const json_t *manifest, RtError
     const RtExperiment *experiment = results->experiment;
     char interval[RT_MAX_INTERVAL_TITLE], null_runs[RT_MAX_SENTENCE];
     RtMemoryFile left_out;
-    json_t *counters = json_array();
+    json_t *counters = json_array(), *colors = json_object();
     if (rt_memory_file_open(&left_out, error) != RT_OK) return counters;
     rt_print_left_out(results, left_out.file);
     rt_interval_title(experiment, interval);
     rt_null_sentence(results, null_runs);
+    for (uint32_t c = 0; c <= experiment->candidate_count; c++) {
+        char color[RT_COLOR_CHARS];
+        rt_candidate_color(experiment, c, color);
+        json_object_set_new(colors, rt_candidate_label(experiment, c), json_string(color));
+    }
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++)
         json_array_append_new(counters, json_pack("[s, s]", rt_tally_name(i), rt_tally_meaning(i)));
     char *learnt = rt_learnt_sentence(results);
     rt_memory_file_close(&left_out, "what was left out", error);
-    json_t *data = json_pack(
-        "{s:O, s:s, s:b, s:s, s:s, s:s, s:o, s:o, s:o, s:o}", "manifest", manifest, "interval", interval,
-        "count_only", experiment->count_only, "null_runs", null_runs, "learnt", learnt ? learnt : "",
-        "left_out", left_out.data ? left_out.data : "", "counters", counters, "papers",
-        rt_page_papers(experiment), "frames", frames_of(results), "sections", tables_of(results));
+    json_t *data =
+        json_pack("{s:O, s:s, s:b, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o}", "manifest", manifest,
+                  "interval", interval, "count_only", experiment->count_only, "null_runs", null_runs,
+                  "learnt", learnt ? learnt : "", "left_out", left_out.data ? left_out.data : "", "counters",
+                  counters, "colors", colors, "verdict", rt_page_claims(results), "papers",
+                  rt_page_papers(experiment), "frames", frames_of(results), "sections", tables_of(results));
     rt_free(learnt);
     rt_free(left_out.data);
     return data;
@@ -502,7 +446,7 @@ static RtStatus put_page(FILE *out, const RtResults *results, const json_t *mani
     rt_page_begin(out, experiment->name, false);
     rt_html_wrap(out, "<p class=\"lede\">", experiment->question, "</p>\n");
     put_answer(out, results, directory);
-    put_claims(out, results);
+    fputs("<div id=\"verdict\"></div>\n", out); /* before the prediction */
     rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "No finding yet.");
     rt_page_card(out, "Prediction, written before the run", experiment->prediction);
     put_links(out, directory);
@@ -515,7 +459,8 @@ RtStatus rt_report_write(const RtResults *results, const char *directory, RtErro
     json_t *manifest;
     RtOutput output;
     RT_TRY(rt_manifest_read(directory, &manifest, error));
-    RtStatus status = write_paper_tables(results, directory, error);
+    RtStatus status = write_tables(results, directory, "tables.md", false, error);
+    if (status == RT_OK) status = write_tables(results, directory, "tables.tex", true, error);
     if (status == RT_OK) status = rt_output_open_in(&output, directory, "report.html", error);
     if (status == RT_OK) {
         status = put_page(output.file, results, manifest, directory, error);

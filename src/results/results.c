@@ -512,23 +512,23 @@ bool rt_claim_is_later(const RtResults *results, uint32_t i) {
     return true;
 }
 
-uint32_t rt_claims_dropped(const RtResults *results, void (*visit)(void *context, const char *claim),
-                           void *context) {
+json_t *rt_claims_dropped(const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
-    uint32_t dropped = 0;
+    json_t *dropped = json_array();
     for (size_t k = 0; k < json_array_size(results->first_claims); k++) {
         const char *text = json_string_value(json_array_get(results->first_claims, k));
         uint32_t i = 0;
         while (text && i < experiment->claim_count && strcmp(experiment->claims[i], text) != 0) i++;
         if (!text || i < experiment->claim_count || is_readout(experiment, text)) continue;
-        if (visit) visit(context, text);
-        dropped++;
+        json_array_append_new(dropped, json_string(text));
     }
     return dropped;
 }
 
 bool rt_claims_are_changed(const RtResults *results) {
-    bool any = rt_claims_dropped(results, NULL, NULL) > 0;
+    json_t *dropped = rt_claims_dropped(results);
+    bool any = json_array_size(dropped) > 0;
+    json_decref(dropped);
     for (uint32_t i = 0; i < results->experiment->claim_count; i++) any |= rt_claim_is_later(results, i);
     return any;
 }

@@ -253,10 +253,8 @@ json_t *rt_claims_json(const RtExperiment *experiment);
  * 1.0. */
 bool rt_claim_is_later(const RtResults *results, uint32_t i);
 
-/* Calls visit(context, claim) with each claim that was there when the run began and is not any more; returns
- * their number. */
-uint32_t rt_claims_dropped(const RtResults *results, void (*visit)(void *context, const char *claim),
-                           void *context);
+/* The texts of the claims that were there when the run began and are not any more; likewise. */
+json_t *rt_claims_dropped(const RtResults *results);
 
 /* Whether any claim is later or dropped. */
 bool rt_claims_are_changed(const RtResults *results);

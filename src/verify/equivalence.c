@@ -129,7 +129,7 @@ enum { FEWEST_SAMPLED = 2000, NEEDED = 1000 };
 
 typedef struct CertainJob {
     const RtReference *reference;
-    RtJudge judge;
+    bool absolute;
     uint64_t stride, count; /* rays 0, stride, 2 stride, ... */
     RtCertain *parts;       /* [chunks] */
 } CertainJob;
@@ -140,8 +140,9 @@ static RtStatus count_chunk(void *context, size_t chunk, int thread, RtError *er
     (void)thread;
     for (uint64_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < job->count; i++) {
         bool certain, must_hit;
-        RT_TRY(rt_verdict_certain(job->judge, &job->reference->rays[i * job->stride], &certain, &must_hit,
-                                  error));
+        const RtJudge judge =
+            rt_judge(&job->reference->scene->geometry, &job->reference->rays[i * job->stride], job->absolute);
+        RT_TRY(rt_verdict_certain(judge, &certain, &must_hit, error));
         part->rays++;
         part->hits += job->reference->hits[i * job->stride].object != RT_NO_OBJECT;
         part->certain += certain;
@@ -156,7 +157,7 @@ RtStatus rt_reference_certain(const RtReference *reference, bool absolute, int t
     uint64_t solids = g->csg_count > 0 ? g->forest.set.solid_count / g->csg_count : 0;
     uint64_t most = CERTAIN_WORK / (g->object_count + WORK_PER_SOLID * solids + 1);
     if (most < FEWEST_SAMPLED) most = FEWEST_SAMPLED;
-    CertainJob job = {.reference = reference, .judge = {g, absolute}, .stride = reference->count / most + 1};
+    CertainJob job = {.reference = reference, .absolute = absolute, .stride = reference->count / most + 1};
     job.count = (reference->count + job.stride - 1) / job.stride;
     size_t chunks = (size_t)(job.count + CHUNK - 1) / CHUNK;
     RT_ARENA(memory);
@@ -238,23 +239,20 @@ static RtStatus answer_chunk(RtQuery *query, const RtRay *rays, void *message, R
     return RT_OK;
 }
 
-static RtJudge judge_of(const RtAccel *accel) {
-    return (RtJudge){&accel->scene->geometry, accel->absolute};
+static RtJudge judge_of(const RtAccel *accel, const RtRay *ray) {
+    return rt_judge(&accel->scene->geometry, ray, accel->absolute);
 }
 
-RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got,
-                           RtVerdict *verdict, RtError *error) {
-    *verdict = memcmp(&expected, &got, sizeof got) == 0 ? RT_EQUAL : RT_WRONG;
-    if (*verdict == RT_EQUAL || query->accel->exact) return RT_OK;
-    return rt_verdict_nearest(judge_of(query->accel), ray, expected, got, verdict, error);
-}
-
-RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got,
-                            RtVerdict *verdict, RtError *error) {
-    bool blocked = expected.object != RT_NO_OBJECT;
-    *verdict = blocked == got ? RT_EQUAL : RT_WRONG;
-    if (*verdict == RT_EQUAL || query->accel->exact) return RT_OK;
-    return rt_verdict_occluded(judge_of(query->accel), ray, blocked, got, verdict, error);
+RtStatus rt_answer_verdict(const RtQuery *query, const RtWrongAnswer *answer, RtVerdict *verdict,
+                           RtError *error) {
+    const RtHit expected = answer->expected, got = answer->got;
+    const bool hit = expected.object != RT_NO_OBJECT;
+    const bool equal = answer->occluded ? hit == answer->blocked : memcmp(&expected, &got, sizeof got) == 0;
+    *verdict = equal ? RT_EQUAL : RT_WRONG;
+    if (equal || query->accel->exact) return RT_OK;
+    const RtJudge judge = judge_of(query->accel, &answer->ray);
+    return answer->occluded ? rt_verdict_occluded(judge, hit, answer->blocked, verdict, error)
+                            : rt_verdict_nearest(judge, expected, got, verdict, error);
 }
 
 void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *wrong, size_t *first,
@@ -267,10 +265,9 @@ void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *
     *count = end < left ? end : left;
 }
 
-static void keep_wrong_answer(RtEquivalence *part, RtWrongAnswer wrong) {
-    if (part->any_wrong) return;
+static void keep_wrong_answer(RtEquivalence *part, const RtWrongAnswer *wrong) {
+    if (!part->any_wrong) part->first_wrong = *wrong;
     part->any_wrong = true;
-    part->first_wrong = wrong;
 }
 
 /* Judges ray `i` of a chunk, and adds the verdict to the chunk's part. */
@@ -283,39 +280,35 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
     bool occluded_wrong = false;
     const RtHit *doubtful = NULL, *faulty = NULL;
     for (int w = 0; w < worker->plan.mode_count; w++) {
-        RtHit got = worker->answers.hits[w][i];
-        bool blocked = worker->answers.blocked[w][i];
         RtWrongAnswer wrong = {.index = index,
                                .counted = worker->plan.modes[w].counted,
                                .stream = worker->plan.modes[w].stream,
                                .ray = *ray,
                                .expected = expected,
-                               .got = got,
-                               .blocked = blocked};
+                               .got = worker->answers.hits[w][i],
+                               .blocked = worker->answers.blocked[w][i]};
         RtVerdict verdict;
-        RT_TRY(rt_answer_verdict(&worker->query, ray, expected, got, &verdict, error));
-        if (verdict == RT_WRONG) keep_wrong_answer(part, wrong);
+        RT_TRY(rt_answer_verdict(&worker->query, &wrong, &verdict, error));
+        if (verdict == RT_WRONG) keep_wrong_answer(part, &wrong);
         if (verdict >= RT_MARGINAL) doubtful = &worker->answers.hits[w][i];
         if (verdict == RT_WRONG) faulty = doubtful;
         if (verdict > worst) worst = verdict;
-        RT_TRY(rt_blocked_verdict(&worker->query, ray, expected, blocked, &verdict, error));
-        if (verdict == RT_WRONG) {
-            occluded_wrong = wrong.occluded = true;
-            keep_wrong_answer(part, wrong);
-        } else if (verdict > worst) {
-            worst = verdict;
-        }
+        wrong.occluded = true;
+        RT_TRY(rt_answer_verdict(&worker->query, &wrong, &verdict, error));
+        if (verdict == RT_WRONG) keep_wrong_answer(part, &wrong);
+        occluded_wrong |= verdict == RT_WRONG;
+        if (verdict != RT_WRONG && verdict > worst) worst = verdict;
     }
     part->rays++;
     part->verdicts[worst]++;
     if (doubtful && !job->accel->exact) {
         RtSide side;
-        RT_TRY(rt_verdict_side(judge_of(job->accel), ray, expected, *doubtful, &side, error));
+        RT_TRY(rt_verdict_side(judge_of(job->accel, ray), expected, *doubtful, &side, error));
         part->sides[side]++;
     }
     if (faulty && !job->accel->exact) {
         RtFault fault;
-        RT_TRY(rt_verdict_fault(judge_of(job->accel), ray, *faulty, &fault, error));
+        RT_TRY(rt_verdict_fault(judge_of(job->accel, ray), *faulty, &fault, error));
         part->faults[fault]++;
     }
     part->occluded_wrong += occluded_wrong;
@@ -383,7 +376,7 @@ RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int 
         for (int v = 0; v < RT_VERDICT_COUNT; v++) out->verdicts[v] += job.parts[i].verdicts[v];
         for (int s = 0; s < RT_SIDE_COUNT; s++) out->sides[s] += job.parts[i].sides[s];
         for (int f = 0; f < RT_FAULT_COUNT; f++) out->faults[f] += job.parts[i].faults[f];
-        if (job.parts[i].any_wrong) keep_wrong_answer(out, job.parts[i].first_wrong);
+        if (job.parts[i].any_wrong) keep_wrong_answer(out, &job.parts[i].first_wrong);
     }
     if (out->any_wrong || job.recounted.status == RT_OK) return RT_OK;
     return rt_fail(error, RT_BROKEN, "%s: %s", accel->ops->name, job.recounted.message);

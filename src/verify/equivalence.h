@@ -26,7 +26,7 @@ RtStatus rt_reference_init(RtReference *reference, const RtAccel *oracle, const 
                            int threads, RtError *error);
 void rt_reference_clear(RtReference *reference);
 
-/* One wrong answer. */
+/* One answer, usually a wrong one. */
 typedef struct RtWrongAnswer {
     size_t index; /* of the ray in the reference */
     bool occluded, counted;
@@ -72,13 +72,10 @@ bool rt_certain_suffices(const RtCertain *certain, uint64_t rays, bool given);
 void rt_certain_undecided(const RtCertain *certain, uint64_t rays, bool given, bool absolute, char *out,
                           size_t size);
 
-/* The verdict on an answer of the query's accelerator to `nearest`, or to `occluded`, given brute's
- * nearest hit `expected`: RT_EQUAL or RT_WRONG for an exact accelerator. RT_NO_MEMORY as in
- * verify/verdict.h. */
-RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got,
-                           RtVerdict *verdict, RtError *error);
-RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got,
-                            RtVerdict *verdict, RtError *error);
+/* The verdict on an answer of the query's accelerator, which may be right: RT_EQUAL or RT_WRONG for an exact
+ * accelerator. RT_NO_MEMORY as in verify/verdict.h. */
+RtStatus rt_answer_verdict(const RtQuery *query, const RtWrongAnswer *answer, RtVerdict *verdict,
+                           RtError *error);
 
 /* The rays that were traced together with that of a wrong answer, up to the end of its stream: `count` of
  * the reference's, from `first` on. */

@@ -43,8 +43,8 @@ static void add(Margins *all, uint32_t id, const RtMargin *m) {
 }
 
 /* The margins of all objects but `except`. */
-static RtStatus margins(const RtMarginRay *ray, const RtGeometry *g, uint32_t except, Margins *all,
-                        RtError *error) {
+static RtStatus margins(const RtJudge *judge, uint32_t except, Margins *all, RtError *error) {
+    const RtGeometry *g = judge->geometry;
     *all = (Margins){.first_certain = RT_NO_OBJECT,
                      .latest = HUGE_VAL,
                      .first_possible = RT_NO_OBJECT,
@@ -53,16 +53,15 @@ static RtStatus margins(const RtMarginRay *ray, const RtGeometry *g, uint32_t ex
     for (uint32_t id = 0; id < g->object_count; id++) {
         RtMargin m;
         if (id == except) continue;
-        RT_TRY(rt_margin_of(ray, g, id, NAN, &m, error));
+        RT_TRY(rt_margin_of(&judge->margin, g, id, NAN, &m, error));
         add(all, id, &m);
     }
     return RT_OK;
 }
 
-RtStatus rt_verdict_certain(RtJudge judge, const RtRay *ray, bool *certain, bool *must_hit, RtError *error) {
-    const RtMarginRay prepared = rt_margin_ray(judge.geometry, ray, judge.absolute);
+RtStatus rt_verdict_certain(RtJudge judge, bool *certain, bool *must_hit, RtError *error) {
     Margins all;
-    RT_TRY(margins(&prepared, judge.geometry, RT_NO_OBJECT, &all, error));
+    RT_TRY(margins(&judge, RT_NO_OBJECT, &all, error));
     *must_hit = all.first_certain != RT_NO_OBJECT;
     double others = all.first_certain == all.first_possible ? all.next_earliest : all.earliest;
     *certain = !all.possible || (*must_hit && all.latest < others);
@@ -72,9 +71,9 @@ RtStatus rt_verdict_certain(RtJudge judge, const RtRay *ray, bool *certain, bool
 /* ---- verdicts ---- */
 
 /* delta / |dir| of the object that an answer names; 0 if it names none. */
-static double tolerance_of(RtJudge judge, const RtMarginRay *ray, RtHit hit) {
-    if (hit.object >= judge.geometry->object_count) return 0;
-    return rt_margin_delta(ray, judge.geometry, hit.object) / ray->line.length;
+static double tolerance_of(const RtJudge *judge, RtHit hit) {
+    if (hit.object >= judge->geometry->object_count) return 0;
+    return rt_margin_delta(&judge->margin, judge->geometry, hit.object) / judge->margin.line.length;
 }
 
 static RtStatus lack_memory(RtError *error) {
@@ -82,33 +81,28 @@ static RtStatus lack_memory(RtError *error) {
 }
 
 /* Does the ray exactly meet both objects, at almost the same t? */
-static RtStatus is_tie(RtJudge judge, const RtMarginRay *prepared, const RtRay *ray, RtHit expected,
-                       RtHit answer, bool *tie, RtError *error) {
+static RtStatus is_tie(RtJudge judge, RtHit expected, RtHit answer, bool *tie, RtError *error) {
     int order;
     long double apart;
-    double tolerance = fmin(tolerance_of(judge, prepared, expected), tolerance_of(judge, prepared, answer));
+    double tolerance = fmin(tolerance_of(&judge, expected), tolerance_of(&judge, answer));
     *tie = false;
     if (!(fabs((double)answer.t - (double)expected.t) <= 2 * tolerance)) return RT_OK;
     RtExactResult result =
-        rt_referee_order(judge.geometry, expected.object, answer.object, ray, &order, &apart);
+        rt_referee_order(judge.geometry, expected.object, answer.object, judge.ray, &order, &apart);
     if (result == RT_UNDECIDED) return lack_memory(error);
     *tie = result == RT_HIT && apart <= (long double)tolerance;
     return RT_OK;
 }
 
-RtStatus rt_verdict_side(RtJudge judge, const RtRay *ray, RtHit expected, RtHit answer, RtSide *side,
-                         RtError *error) {
-    const RtMarginRay prepared = rt_margin_ray(judge.geometry, ray, judge.absolute);
-    double tolerance = fmax(tolerance_of(judge, &prepared, expected), tolerance_of(judge, &prepared, answer));
-    *side = rt_referee_judge(judge.geometry, ray, expected, answer, tolerance).side;
+RtStatus rt_verdict_side(RtJudge judge, RtHit expected, RtHit answer, RtSide *side, RtError *error) {
+    double tolerance = fmax(tolerance_of(&judge, expected), tolerance_of(&judge, answer));
+    *side = rt_referee_judge(judge.geometry, judge.ray, expected, answer, tolerance).side;
     return *side == RT_SIDE_UNDECIDED ? lack_memory(error) : RT_OK;
 }
 
-RtStatus rt_verdict_nearest(RtJudge judge, const RtRay *ray, RtHit expected, RtHit answer, RtVerdict *verdict,
-                            RtError *error) {
-    const RtMarginRay prepared = rt_margin_ray(judge.geometry, ray, judge.absolute);
+RtStatus rt_verdict_nearest(RtJudge judge, RtHit expected, RtHit answer, RtVerdict *verdict, RtError *error) {
     const bool miss = answer.object == RT_NO_OBJECT;
-    const double asked = (double)answer.t * prepared.line.length;
+    const double asked = (double)answer.t * judge.margin.line.length;
     RtMargin own;
     Margins others;
     *verdict = RT_EQUAL;
@@ -116,29 +110,28 @@ RtStatus rt_verdict_nearest(RtJudge judge, const RtRay *ray, RtHit expected, RtH
     *verdict = RT_WRONG;
     if (!miss) {
         if (answer.object >= judge.geometry->object_count) return RT_OK;
-        RT_TRY(rt_margin_of(&prepared, judge.geometry, answer.object, asked, &own, error));
+        RT_TRY(rt_margin_of(&judge.margin, judge.geometry, answer.object, asked, &own, error));
         if (!own.holds) return RT_OK;
     }
     const bool same = answer.object == expected.object, both = !miss && expected.object != RT_NO_OBJECT;
-    const double at = (double)expected.t * prepared.line.length;
+    const double at = (double)expected.t * judge.margin.line.length;
     bool tie = false;
-    if (both && !same) RT_TRY(is_tie(judge, &prepared, ray, expected, answer, &tie, error));
+    if (both && !same) RT_TRY(is_tie(judge, expected, answer, &tie, error));
     *verdict = tie ? RT_TIE : both && same && at >= own.lo && at <= own.hi ? RT_EQUAL : RT_MARGINAL;
     /* Nothing fits between t's that are a few ulps apart; otherwise something may be hit before. */
     if (*verdict != RT_MARGINAL && fabs(asked - at) <= 0x1p-21 * fabs(at)) return RT_OK;
-    RT_TRY(margins(&prepared, judge.geometry, answer.object, &others, error));
+    RT_TRY(margins(&judge, answer.object, &others, error));
     if (others.first_certain != RT_NO_OBJECT && (miss || asked > others.latest)) *verdict = RT_WRONG;
     return RT_OK;
 }
 
-RtStatus rt_verdict_fault(RtJudge judge, const RtRay *ray, RtHit answer, RtFault *fault, RtError *error) {
-    const RtMarginRay prepared = rt_margin_ray(judge.geometry, ray, judge.absolute);
+RtStatus rt_verdict_fault(RtJudge judge, RtHit answer, RtFault *fault, RtError *error) {
     RtMargin own = {0};
     *fault = RT_FAULT_LOST;
     if (answer.object == RT_NO_OBJECT) return RT_OK;
     if (answer.object < judge.geometry->object_count)
-        RT_TRY(rt_margin_of(&prepared, judge.geometry, answer.object, (double)answer.t * prepared.line.length,
-                            &own, error));
+        RT_TRY(rt_margin_of(&judge.margin, judge.geometry, answer.object,
+                            (double)answer.t * judge.margin.line.length, &own, error));
     *fault = own.holds      ? RT_FAULT_BEHIND
              : own.edge_on  ? RT_FAULT_EDGE_ON
              : own.possible ? RT_FAULT_DISPLACED
@@ -146,13 +139,11 @@ RtStatus rt_verdict_fault(RtJudge judge, const RtRay *ray, RtHit answer, RtFault
     return RT_OK;
 }
 
-RtStatus rt_verdict_occluded(RtJudge judge, const RtRay *ray, bool expected, bool answer, RtVerdict *verdict,
-                             RtError *error) {
-    const RtMarginRay prepared = rt_margin_ray(judge.geometry, ray, judge.absolute);
+RtStatus rt_verdict_occluded(RtJudge judge, bool expected, bool answer, RtVerdict *verdict, RtError *error) {
     Margins all;
     *verdict = RT_EQUAL;
     if (answer == expected) return RT_OK;
-    RT_TRY(margins(&prepared, judge.geometry, RT_NO_OBJECT, &all, error));
+    RT_TRY(margins(&judge, RT_NO_OBJECT, &all, error));
     bool right = answer ? all.possible : all.first_certain == RT_NO_OBJECT;
     *verdict = right ? RT_MARGINAL : RT_WRONG;
     return RT_OK;

@@ -29,11 +29,17 @@ typedef enum RtVerdict {
 /* "equal", "tie", "marginal", "wrong" */
 const char *rt_verdict_name(RtVerdict verdict);
 
-/* The scene, and whether the accelerator computes with absolute coordinates (RtAccel.absolute). */
+/* What answers to a valid ray are judged by. `absolute`: the accelerator computes with absolute coordinates
+ * (RtAccel.absolute). Geometry and ray are borrowed. */
 typedef struct RtJudge {
-    const RtGeometry *geometry; /* borrowed */
-    bool absolute;
+    const RtGeometry *geometry;
+    const RtRay *ray;
+    RtMarginRay margin;
 } RtJudge;
+
+static inline RtJudge rt_judge(const RtGeometry *geometry, const RtRay *ray, bool absolute) {
+    return (RtJudge){geometry, ray, rt_margin_ray(geometry, ray, absolute)};
+}
 
 /* What is wrong with a wrong answer to `nearest`. X(CONSTANT, name, meaning) */
 #define RT_FAULTS(X)                                                                                         \
@@ -55,22 +61,19 @@ const char *rt_fault_name(RtFault fault);
 
 /* All of these fail with RT_NO_MEMORY if exact arithmetic on a CSG tree lacks memory, without a result. */
 
-/* Judges the nearest hit `answer` of a valid ray; `expected` is brute's. */
-RtStatus rt_verdict_nearest(RtJudge judge, const RtRay *ray, RtHit expected, RtHit answer, RtVerdict *verdict,
-                            RtError *error);
+/* Judges the nearest hit `answer`; `expected` is brute's. */
+RtStatus rt_verdict_nearest(RtJudge judge, RtHit expected, RtHit answer, RtVerdict *verdict, RtError *error);
 
 /* The fault of an answer that is wrong. */
-RtStatus rt_verdict_fault(RtJudge judge, const RtRay *ray, RtHit answer, RtFault *fault, RtError *error);
+RtStatus rt_verdict_fault(RtJudge judge, RtHit answer, RtFault *fault, RtError *error);
 
 /* Judges an answer to `occluded`: equal, marginal or wrong. */
-RtStatus rt_verdict_occluded(RtJudge judge, const RtRay *ray, bool expected, bool answer, RtVerdict *verdict,
-                             RtError *error);
+RtStatus rt_verdict_occluded(RtJudge judge, bool expected, bool answer, RtVerdict *verdict, RtError *error);
 
 /* Is the ray certain, and must it hit something (even if several objects may be the nearest)? */
-RtStatus rt_verdict_certain(RtJudge judge, const RtRay *ray, bool *certain, bool *must_hit, RtError *error);
+RtStatus rt_verdict_certain(RtJudge judge, bool *certain, bool *must_hit, RtError *error);
 
 /* Which answer to `nearest` is exactly right, up to delta / |dir|? */
-RtStatus rt_verdict_side(RtJudge judge, const RtRay *ray, RtHit expected, RtHit answer, RtSide *side,
-                         RtError *error);
+RtStatus rt_verdict_side(RtJudge judge, RtHit expected, RtHit answer, RtSide *side, RtError *error);
 
 #endif

@@ -2,7 +2,7 @@
 /* Verification: does every accelerator answer every ray of every scene like brute?
  *
  * A row is a scene and a spec, with the numbers of equal, tied, marginal and wrong answers; its first wrong
- * answer is kept in a replay file (verify/replay.h). The first failure of a spec is shrunk to a few objects,
+ * answer is kept in a replay file (verify/failure.h). The first failure of a spec is shrunk to a few objects,
  * up to eight failures in all, each with half the budget of the one before; if more than one is asked for
  * (RtVerify.shrink), each has the whole budget. Rows are appended to a journal, from which an interrupted run
  * resumes, and finally to the tables of verify_table.h. */
@@ -54,5 +54,17 @@ typedef struct RtVerifyObserver {
  */
 RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer, json_t **rows,
                        RtError *error);
+
+/* ---- the spread of an accelerator: its defaults, then each parameter at each test value, one at a time ----
+ */
+
+/* Writes the `n`th spec of the spread, "name" or "name:key=value", to out[0..RT_MAX_SPEC_CHARS); false past
+ * the last. Default values are skipped. An overlay lies over the default accelerator. After the defaults
+ * comes the trial (RtAccelOps.trial), if there is one; the others include its values, too. */
+bool rt_spread_spec(const RtAccelOps *ops, size_t n, char *out);
+
+/* The trial of a valid spec without parameters ("light+wide"), with that of each layer that has one, to
+ * out[0..RT_MAX_SPEC_CHARS); false if there is none. */
+bool rt_trial_spec(const char *spec, char *out);
 
 #endif

@@ -10,6 +10,27 @@
 #include "rays/rayset.h"
 #include "verify/equivalence.h"
 
+/* ---- families ---- */
+
+/* Rays that are hard on accelerators: they graze, start or end on surfaces, or run along axes, edges and the
+ * faces of boxes. Each is generated from its own stream of the seed, so ray i of a family is always the same.
+ * A family without a target (no vertices in a scene of spheres) aims at other suitable points. */
+
+/* Rays in a bundle; a bundle starts at a multiple of this number. */
+enum { RT_RAY_BUNDLE = 256 };
+
+/* The first family is `chord`: random chords of the scene's bounding sphere. */
+size_t rt_ray_family_count(void);
+const char *rt_ray_family_name(size_t family);
+
+/* Generates rays first..first+count-1 of a family for the scene of `query`; all are valid. They are of
+ * kind random, except those towards lights and through samples of the image. `query` belongs to any exact
+ * accelerator: some families need the hit of a ray. */
+void rt_ray_family_fill(size_t family, RtQuery *query, uint64_t seed, uint64_t first, size_t count,
+                        RtRay *rays);
+
+/* ---- all rays of a scene ---- */
+
 typedef struct RtVerifyRays {
     uint64_t count, seed;
     int threads;
@@ -27,16 +48,14 @@ typedef struct RtVerifyScene {
     RtScene scene;
     RtAccel *truth;
     RtRay *rays;
-    RtReference reference;
-    const char *name; /* for the rows; set by the caller */
+    RtReference reference; /* `truth` at `rays`; set by the caller, who knows when it is needed */
+    const char *name;      /* for the rows; set by the caller */
 } RtVerifyScene;
 
 /* Samples the scene and records the rays, which depend on `wanted` and the scene alone, not on its
  * sampling. Call rt_verify_scene_clear also after a failure. */
 RtStatus rt_verify_scene_init(RtVerifyScene *scene, const RtScene *from, const RtVerifyRays *wanted,
                               RtError *error);
-/* Computes the reference answers by brute force. */
-RtStatus rt_verify_scene_answer(RtVerifyScene *scene, const RtVerifyRays *wanted, RtError *error);
 /* A zeroed struct may be cleared. */
 void rt_verify_scene_clear(RtVerifyScene *scene);
 

@@ -204,22 +204,25 @@ typedef RtVerifySum Row;
     X(inexact, "accelerator", markup, "", "", rt_field_print("`%s`", r->name))
 RT_TABLE_COLUMNS(sum_columns, SUMS)
 
-static RtField get_side(const void *row, const RtTableColumn *column) {
-    return rt_field_integer(((const RtVerifySum *)row)->sides[column->key]);
+/* The count whose offset in the sum is the key. */
+static RtField get_count(const void *row, const RtTableColumn *column) {
+    return rt_field_integer(*(const uint64_t *)(const void *)((const char *)row + column->key));
 }
 
 #define SUM_OF_SIDE(CONSTANT, name, meaning)                                                                 \
-    {#name, #name, "", meaning, get_side, RT_FORM_integer, RT_SIDE_##CONSTANT},
+    {#name, #name, "", meaning, get_count, RT_FORM_integer, offsetof(RtVerifySum, sides[RT_SIDE_##CONSTANT])},
 static const RtTableColumn sum_sides[] = {RT_SIDES(SUM_OF_SIDE)};
 
 static const RtColumnGroup by_accel[] = {RT_ONE(sum_columns, accel), RT_FROM_TO(sum_columns, rows, failed)};
 static const RtColumnGroup by_scene[] = {RT_ONE(sum_columns, scene), RT_FROM_TO(sum_columns, rows, failed)};
-static RtField get_fault(const void *row, const RtTableColumn *column) {
-    return rt_field_integer(((const RtVerifySum *)row)->faults[column->key]);
-}
-
 #define SUM_OF_FAULT(CONSTANT, name, meaning)                                                                \
-    {#name, #name, "", meaning, get_fault, RT_FORM_integer, RT_FAULT_##CONSTANT},
+    {#name,                                                                                                  \
+     #name,                                                                                                  \
+     "",                                                                                                     \
+     meaning,                                                                                                \
+     get_count,                                                                                              \
+     RT_FORM_integer,                                                                                        \
+     offsetof(RtVerifySum, faults[RT_FAULT_##CONSTANT])},
 static const RtTableColumn sum_faults[] = {RT_FAULTS(SUM_OF_FAULT)};
 
 static const RtColumnGroup by_fault[] = {RT_ONE(sum_columns, inexact),

@@ -5,7 +5,7 @@
 #include "equivalence_testing.h"
 
 #include "core/base/random.h"
-#include "verify/spread.h"
+#include "verify/verify.h"
 
 /* ---- threads ---- */
 

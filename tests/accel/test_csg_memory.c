@@ -5,7 +5,7 @@
 #include "item_testing.h"
 
 #include "verify/failure.h"
-#include "verify/spread.h"
+#include "verify/verify.h"
 
 /* A row of balls, and rays along it. */
 enum { BALLS = 200, RAYS = 8 };
@@ -165,18 +165,18 @@ static RtStatus stack_of_overlays(const Row *row, RtError *error) {
 
 /* Of answers that are not brute's, by the referee: the one is right, the other wrong. */
 static RtStatus judge(const Row *row, RtError *error) {
-    const RtJudge by = {.geometry = &row->scene.geometry};
+    const RtJudge by = rt_judge(&row->scene.geometry, ray, false);
     const RtRay *ray = &row->rays[0];
     const RtHit hit = {49, 0};
     RtVerdict verdict;
     RtSide side;
-    RT_TRY(rt_verdict_nearest(by, ray, RT_MISS, hit, &verdict, error));
+    RT_TRY(rt_verdict_nearest(by, RT_MISS, hit, &verdict, error));
     assert_int_equal(verdict, RT_MARGINAL);
-    RT_TRY(rt_verdict_nearest(by, ray, hit, RT_MISS, &verdict, error));
+    RT_TRY(rt_verdict_nearest(by, hit, RT_MISS, &verdict, error));
     assert_int_equal(verdict, RT_WRONG);
-    RT_TRY(rt_verdict_side(by, ray, RT_MISS, hit, &side, error));
+    RT_TRY(rt_verdict_side(by, RT_MISS, hit, &side, error));
     assert_int_equal(side, RT_SIDE_GOT);
-    RT_TRY(rt_verdict_occluded(by, ray, true, false, &verdict, error));
+    RT_TRY(rt_verdict_occluded(by, true, false, &verdict, error));
     assert_int_equal(verdict, RT_WRONG);
     return RT_OK;
 }

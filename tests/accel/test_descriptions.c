@@ -6,7 +6,7 @@
 #include "accel_testing.h"
 
 #include "rays/rayset.h"
-#include "verify/spread.h"
+#include "verify/verify.h"
 
 /* ---- leaves ---- */
 

@@ -92,12 +92,12 @@ RT_TEST(the_referee_decides_against_us_too) {
             against++;
             RtSide side;
             RtVerdict verdict;
-            assert_ok(rt_verdict_side((RtJudge){.geometry = &g}, &ray, expected, right, &side, error));
+            assert_ok(rt_verdict_side(rt_judge(&g, &ray, false), expected, right, &side, error));
             assert_int_equal(side, RT_SIDE_GOT);
-            assert_ok(rt_verdict_nearest((RtJudge){.geometry = &g}, &ray, expected, right, &verdict, error));
+            assert_ok(rt_verdict_nearest(rt_judge(&g, &ray, false), expected, right, &verdict, error));
             assert_int_equal(verdict, RT_MARGINAL);
-            assert_ok(rt_verdict_occluded((RtJudge){.geometry = &g}, &ray, decision.hit, !decision.hit,
-                                          &verdict, error));
+            assert_ok(
+                rt_verdict_occluded(rt_judge(&g, &ray, false), decision.hit, !decision.hit, &verdict, error));
             assert_int_equal(verdict, RT_MARGINAL);
         }
     }

@@ -24,7 +24,7 @@ typedef void Reader(const Input *input);
 typedef void Preparation(void); /* once, before the first input; what it allocates stays */
 Reader fuzz_scene, fuzz_trace, fuzz_rays, fuzz_replay;
 Reader fuzz_experiment, fuzz_claim, fuzz_spec, fuzz_manifest, fuzz_journal, fuzz_packed_journal, fuzz_csv,
-    fuzz_figures, fuzz_verification;
+    fuzz_verification;
 Reader fuzz_plugin, fuzz_worker;
 Preparation fuzz_prepare_trace, fuzz_prepare_results, fuzz_prepare_journal, fuzz_prepare_claim,
     fuzz_prepare_plugin;

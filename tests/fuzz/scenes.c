@@ -5,9 +5,7 @@
 #include "core/base/memory.h"
 #include "core/scene/load.h"
 #include "measure/measure.h"
-#include "verify/ray_families.h"
-#include "verify/replay.h"
-#include "verify/spread.h"
+#include "verify/verify.h"
 
 #include <stdlib.h>
 #include <string.h>

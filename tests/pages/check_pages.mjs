@@ -29,6 +29,12 @@ async function filter(words) {
              said: document.querySelector('#filter output').textContent };`);
 }
 
+async function checkVerdict(page, where) {
+  await browser.open(url(page));
+  const found = await browser.run("return [...document.querySelectorAll(arguments[0])].map((badge) => badge.textContent);", where);
+  holds(found[0] === '0 of 3 claims hold, 3 undecided', `${page} says what the claims came to: ${found}`);
+}
+
 async function checkSorting() {
   holds(await clickHeader('tests_a_ray') === 'ascending', 'a click on a header sorts, and says so');
   const up = (await columnOf('tests_a_ray')).filter((value) => !Number.isNaN(value));
@@ -127,6 +133,8 @@ try {
       await checkAxe(page, 1440, scheme);
     }
   }
+  await checkVerdict(small, '#verdict .verdict');
+  await checkVerdict(index, '.entry .verdict');
   await checkDark(small, '.plot img');
   await checkDark(index, '.thumb img');
   const { bytes, opened, sorted } = await checkLarge();

@@ -5,7 +5,7 @@
 
 #include "picture/picture_testing.h"
 #include "picture/pictures.h"
-#include "verify/spread.h"
+#include "verify/verify.h"
 
 /* Looks on as a ray is traced by the counted kernels, which is what a path is made of, and compares with the
  * tally that the same ray has where nobody looks on. */

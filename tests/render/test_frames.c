@@ -5,7 +5,7 @@
 #include "accel_testing.h"
 
 #include "render/frame.h"
-#include "verify/spread.h"
+#include "verify/verify.h"
 
 /* A scene and how it is sampled: between them, all shapes, all kinds of rays, and every way to sample. */
 typedef struct Shot {

@@ -20,17 +20,12 @@ static const char swept[] = "name: small\n"
                             "rounds: 2\n"
                             "milliseconds: 0\n";
 
-static int make_swept(void **state) {
-    return make_place_with(state, swept);
-}
-
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_swept, remove_place)
+PLACES_WITH(swept)
 
 /* 2 clouds with 1 + 5 + 2 accelerators, and balls with 3. */
-RT_TEST_IN_PLACE(each_value_is_a_row_and_each_parameter_a_column_at_the_end) {
-    const Place *place = *state;
+PLACE_TEST(each_value_is_a_row_and_each_parameter_a_column_at_the_end) {
     OWNED_CSV csv;
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1");
     Path path = path_in(place, "out/counts.csv");
     read_csv(&csv, path.text);
     assert_int_equal(csv.rows, 2 * 8 + 3);
@@ -47,9 +42,8 @@ RT_TEST_IN_PLACE(each_value_is_a_row_and_each_parameter_a_column_at_the_end) {
     assert_string_equal(csv_field(&csv, 18, build), "lbvh");
 }
 
-RT_TEST_IN_PLACE(without_scripts_a_plot_is_drawn_for_each_parameter_and_measure) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+PLACE_TEST(without_scripts_a_plot_is_drawn_for_each_parameter_and_measure) {
+    assert_runs(place, "run small.yaml --out out --threads 1");
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
     const char *const drawn[] = {"out/plots/01-sweep-n-time.svg",
                                  "out/plots/02-sweep-n-object-tests.svg",
@@ -66,18 +60,17 @@ RT_TEST_IN_PLACE(without_scripts_a_plot_is_drawn_for_each_parameter_and_measure)
     assert_in_file(place, drawn[5], "viewBox=\"0 0 960 ");
     assert_in_file(place, "out/report.html", "data:image/svg+xml");
     assert_false(rt_file_exists(path_in(place, "out/plots/sweeps.gp").text));
-    assert_int_equal(raytally(place, "plot out --paper column"), 0);
+    assert_runs(place, "plot out --paper column");
     assert_in_file(place, drawn[5], "viewBox=\"0 0 480 ");
 }
 
 /* Lines by line as src/report/plot.c says; a legend and shades in the order of the sweep need it. */
-RT_TEST_IN_PLACE(the_data_of_a_plot_has_a_block_per_scene_and_in_it_a_line_per_accelerator) {
-    const Place *place = *state;
+PLACE_TEST(the_data_of_a_plot_has_a_block_per_scene_and_in_it_a_line_per_accelerator) {
     unsigned color, before = 0;
     int marker;
     double x;
     char value[8];
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1");
     OWNED_MEMORY char *density = read_in(place, "out/plots/sweep-density.tsv");
     const char *grid = strstr(density, "cloud:n=20\tgrid\t"), *flat = strstr(density, "cloud:n=20\tbvh\t");
     assert_true(flat == density && grid);
@@ -103,8 +96,7 @@ RT_TEST_IN_PLACE(the_data_of_a_plot_has_a_block_per_scene_and_in_it_a_line_per_a
     assert_non_null(strstr(build, "\n\n\nballs\tbvh\t"));
 }
 
-RT_TEST_IN_PLACE(a_bad_sweep_is_refused_with_its_line) {
-    const Place *place = *state;
+PLACE_TEST(a_bad_sweep_is_refused_with_its_line) {
     const struct {
         const char *from, *to, *says;
     } cases[] = {
@@ -123,8 +115,7 @@ RT_TEST_IN_PLACE(a_bad_sweep_is_refused_with_its_line) {
 
 /* Specs of kept results are not parsed, for the accelerators may be missing; gnuplot runs what stands in
  * backquotes in the variables that it gets. */
-RT_TEST_IN_PLACE(a_swept_value_that_gnuplot_would_run_is_refused_also_in_results_that_are_read) {
-    const Place *place = *state;
+PLACE_TEST(a_swept_value_that_gnuplot_would_run_is_refused_also_in_results_that_are_read) {
     json_t *manifest = json_object();
     write_changed(place, "small.yaml", swept, "grid:density=1..16*2",
                   "grid:mailbox=on,resolution=auto,empty_steps_stay=on,rule=woo|`harm`");
@@ -134,8 +125,7 @@ RT_TEST_IN_PLACE(a_swept_value_that_gnuplot_would_run_is_refused_also_in_results
     json_decref(manifest);
 }
 
-RT_TEST_IN_PLACE(bench_takes_sweeps_of_scenes_and_accelerators) {
-    const Place *place = *state;
+PLACE_TEST(bench_takes_sweeps_of_scenes_and_accelerators) {
     assert_int_equal(raytally(place, "bench 'random:n=10|20' --accel bvh --accel 'grid:density=1..4*2' "
                                      "--ray-stride 3 --rays primary --size 8x8 --count-only --csv rows.csv"),
                      0);

@@ -56,11 +56,7 @@ static const void *thing_at(void *context, size_t i) {
     return things[i].name ? &things[i] : NULL;
 }
 
-static const char *red(const void *row) {
-    return row == things ? "red" : NULL;
-}
-
-static const RtTable table = {RT_GROUPS(groups), .row_count = 3, .row = thing_at, .color = red};
+static const RtTable table = {RT_GROUPS(groups), .row_count = 3, .row = thing_at};
 
 static void assert_written(const RtTable *what, void (*write)(const RtTable *, FILE *),
                            const char *expected) {
@@ -126,14 +122,13 @@ RT_TEST(a_page_gets_columns_texts_with_their_numbers_notes_and_marks) {
     narrow.standing = first_is_best;
     json_t *page = rt_table_page(&narrow);
     json_t *expected =
-        json_pack("{s:s, s:[{s:s, s:s, s:s, s:b}, {s:s, s:s, s:s, s:b}, {s:s, s:s, s:s, s:b}], s:[{s:s, s:s, "
-                  "s:[s, [s, i], "
-                  "[s, f, s]]}, {s:s, s:s, s:[s, [s, i], [s, n]]}]}",
+        json_pack("{s:s, s:[{s:s, s:s, s:s, s:b}, {s:s, s:s, s:s, s:b}, {s:s, s:s, s:s, s:b}], s:[{s:s, "
+                  "s:[s, [s, i], [s, f, s]]}, {s:s, s:[s, [s, i], [s, n]]}]}",
                   "title", "a & b", "columns", "id", "name", "name", "name", "meaning", "what it is called",
                   "number", 0, "id", "hits", "name", "hit count", "meaning", "hits", "number", 1, "id",
-                  "seconds", "name", "seconds", "meaning", "how long it took", "number", 1, "rows", "color",
-                  "red", "standing", "best", "fields", "a|b, `c` **d**", "12", 12, "1.5", 1.5,
-                  "a \"slow\" one", "color", "", "standing", "", "fields", "<x>", "3456", 3456, "");
+                  "seconds", "name", "seconds", "meaning", "how long it took", "number", 1, "rows",
+                  "standing", "best", "fields", "a|b, `c` **d**", "12", 12, "1.5", 1.5, "a \"slow\" one",
+                  "standing", "", "fields", "<x>", "3456", 3456, "");
     assert_non_null(expected);
     assert_true(json_equal(page, expected));
     json_decref(expected);

@@ -9,7 +9,7 @@
  * as many rays of each family (the default is 64; AddressSanitizer in ./test.sh --all takes 16). */
 #include "equivalence_testing.h"
 
-#include "verify/spread.h"
+#include "verify/verify.h"
 
 #include <xxhash.h>
 

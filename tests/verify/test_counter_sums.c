@@ -4,7 +4,7 @@
 #include "equivalence_testing.h"
 
 #include "core/base/parallel.h"
-#include "verify/spread.h"
+#include "verify/verify.h"
 
 enum { RAYS = RT_SHARE(3000, 600), PIECE = RAYS / 6 };
 

@@ -5,7 +5,7 @@
  * others; it takes denormal numbers for 0. */
 #include "equivalence_testing.h"
 
-#include "verify/spread.h"
+#include "verify/verify.h"
 
 #include <float.h>
 

@@ -45,7 +45,7 @@ static bool is_ray(const RtRay *ray) {
 
 static RtVerdict verdict_of(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer) {
     RtVerdict verdict;
-    assert_ok(rt_verdict_nearest((RtJudge){.geometry = g}, ray, expected, answer, &verdict, error));
+    assert_ok(rt_verdict_nearest(rt_judge(g, ray, false), expected, answer, &verdict, error));
     return verdict;
 }
 
@@ -183,14 +183,14 @@ RT_TEST(float32_triangle_tests_that_subtract_the_origin_first_have_nothing_wrong
             if (!is_ray(&ray)) continue;
             const Arithmetic fused = {i % 2 == 1};
             bool is_certain, must_hit;
-            assert_ok(rt_verdict_certain((RtJudge){.geometry = &g}, &ray, &is_certain, &must_hit, error));
+            assert_ok(rt_verdict_certain(rt_judge(&g, &ray, false), &is_certain, &must_hit, error));
             certain += is_certain;
             rays++;
             for (int f = 0; f < 3; f++) {
                 RtHit answer = answer_in_float(&g, tests[f], fused, &ray);
                 if (verdict_by_margins(&g, &ray, answer) != RT_WRONG) continue;
                 RtFault fault;
-                assert_ok(rt_verdict_fault((RtJudge){.geometry = &g}, &ray, answer, &fault, error));
+                assert_ok(rt_verdict_fault(rt_judge(&g, &ray, false), answer, &fault, error));
                 if (wrong++ < 5)
                     print_error("%s, test %d, ray %d: %s, object %u at %g\n", places[k].name, f, i,
                                 rt_fault_name(fault), answer.object, (double)answer.t);
@@ -459,7 +459,7 @@ RT_TEST(a_t_far_from_the_triangle_is_wrong) {
     RtFault fault;
     OWNED_OBJECT(g, triangle, v, NULL);
     assert_int_equal(verdict_of(&g, &ray, RT_MISS, (RtHit){1140.2f, 0}), RT_WRONG);
-    assert_ok(rt_verdict_fault((RtJudge){.geometry = &g}, &ray, (RtHit){1140.2f, 0}, &fault, error));
+    assert_ok(rt_verdict_fault(rt_judge(&g, &ray, false), (RtHit){1140.2f, 0}, &fault, error));
     assert_int_equal(fault, RT_FAULT_EDGE_ON);
     assert_int_equal(verdict_of(&g, &ray, RT_MISS, (RtHit){434, 0}), RT_MARGINAL);
 }
@@ -478,7 +478,7 @@ RT_TEST(brute_contradicts_no_certain_answer_and_the_certain_answer_is_exact) {
             bool certain, must_hit;
             if (verdict_by_margins(g, ray, hit) == RT_WRONG)
                 fail_msg("%s, ray %zu: object %u at %g", bench.scene.name, i, hit.object, (double)hit.t);
-            assert_ok(rt_verdict_certain((RtJudge){.geometry = g}, ray, &certain, &must_hit, error));
+            assert_ok(rt_verdict_certain(rt_judge(g, ray, false), &certain, &must_hit, error));
             rays++;
             if (!certain) continue;
             certain_rays++;

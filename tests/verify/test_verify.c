@@ -7,8 +7,6 @@
 #include "core/base/file.h"
 #include "core/text/json.h"
 #include "scenes/open.h"
-#include "verify/replay.h"
-#include "verify/spread.h"
 #include "verify/verify.h"
 #include "verify/verify_table.h"
 
@@ -133,6 +131,7 @@ RT_TEST(a_row_has_the_members_that_its_columns_name) {
 
 RT_TEST(threads_and_interruptions_change_no_byte) {
     json_decref(verify(OUT "/a", 1, RT_START_ANEW));
+    assert_true(scenes_worked_on == 2 && scenes_opened == 2);
     json_decref(verify(OUT "/b", 2, RT_START_ANEW));
     OWNED_MEMORY char *journal = text_of(OUT "/b", "rows.jsonl");
     /* The header, two rows, and a part of the third: as if the power had failed then. */
@@ -150,12 +149,6 @@ RT_TEST(threads_and_interruptions_change_no_byte) {
     assert_same_file("0002-family-kind-plane-seed-1-mutant-kind-unpadded-boxes.json", OUT "/a", OUT "/b");
     json_decref(verify(OUT "/b", 0, RT_START_RESUME));
     assert_int_equal(scenes_worked_on, 0);
-}
-
-RT_TEST(each_scene_is_opened_once) {
-    json_decref(verify(OUT "/f", 0, RT_START_ANEW));
-    assert_int_equal(scenes_worked_on, 2);
-    assert_int_equal(scenes_opened, 2);
 }
 
 static int threads_of_build;
@@ -211,37 +204,27 @@ RT_TEST(a_wrong_answer_is_shown_though_its_replay_file_cannot_be_written) {
     assert_int_equal(notices, 1);
 }
 
-/* Only its first failure is shrunk; the next one is kept with its whole scene. */
-RT_TEST(an_accelerator_has_one_failure_shrunk) {
-    const char *const both[] = {scenes[0], "family:kind=axis-aligned,seed=1"};
-    const RtVerifySpec spec = {UNPADDED, true, true};
-    json_auto_t *rows = verify_spec(&spec, both, 2, 6000, 0, OUT "/g");
-    for (size_t i = 0; i < 2; i++) {
-        OWNED(rt_replay_clear) RtReplay replay;
-        RtAnswer answer;
-        const json_t *wrong = json_object_get(json_array_get(rows, i), "first_wrong");
-        assert_true(json_is_true(json_object_get(wrong, "shrunk")) == (i == 0));
-        json_int_t left = json_integer_value(json_object_get(wrong, "objects_left"));
-        assert_true(i == 0 ? left <= 3 : left == 150);
-        assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, i)), error));
-        assert_true((replay.shrunk_yaml != NULL) == (i == 0));
-        assert_ok(rt_replay_ask(&replay, false, &answer, error));
-        assert_true(answer.wrong);
-    }
-}
-
+/* By default the first alone; the others are kept with their whole scenes. */
 RT_TEST(an_accelerator_has_as_many_failures_shrunk_as_are_asked_for) {
     static const char *const three[] = {"family:kind=plane,seed=1", "family:kind=axis-aligned,seed=1",
                                         "family:kind=axis-aligned,seed=2"};
-    static const uint32_t wanted[] = {2, RT_SHRINK_ALL};
+    static const uint32_t wanted[] = {0, 2, RT_SHRINK_ALL};
     const RtVerifySpec spec = {UNPADDED, true, true};
-    for (size_t w = 0; w < 2; w++) {
+    for (size_t w = 0; w < 3; w++) {
         shrink = wanted[w];
         json_auto_t *rows = verify_spec(&spec, three, 3, 6000, 0, OUT "/s");
         for (uint32_t i = 0; i < 3; i++) {
+            OWNED(rt_replay_clear) RtReplay replay;
+            RtAnswer answer;
+            const bool shrunk = i == 0 || i < wanted[w];
             const json_t *wrong = json_object_get(json_array_get(rows, i), "first_wrong");
-            assert_true(json_is_true(json_object_get(wrong, "shrunk")) == (i < wanted[w]));
-            assert_true((json_integer_value(json_object_get(wrong, "objects_left")) <= 3) == (i < wanted[w]));
+            const json_int_t left = json_integer_value(json_object_get(wrong, "objects_left"));
+            assert_true(json_is_true(json_object_get(wrong, "shrunk")) == shrunk);
+            assert_true(shrunk ? left <= 3 : left == 150);
+            assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, i)), error));
+            assert_true((replay.shrunk_yaml != NULL) == shrunk);
+            assert_ok(rt_replay_ask(&replay, false, &answer, error));
+            assert_true(answer.wrong);
         }
     }
     shrink = 0;

@@ -488,11 +488,9 @@ static void put_page(Writer *w, const Line *line, const void *row) {
         json_object_set_new(w->page, "columns", list);
         return;
     }
-    const char *color = w->table->color ? w->table->color(row) : NULL;
     const RtStanding standing = w->table->standing ? w->table->standing(row) : RT_STANDING_BEHIND;
     json_array_append_new(json_object_get(w->page, "rows"),
-                          json_pack("{s:s, s:s, s:o}", "color", color ? color : "", "standing",
-                                    standings[standing], "fields", list));
+                          json_pack("{s:s, s:o}", "standing", standings[standing], "fields", list));
 }
 
 json_t *rt_table_page(const RtTable *table) {

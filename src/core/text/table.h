@@ -195,7 +195,6 @@ typedef struct RtTable {
     void *context;
     /* Text: prints lines above each row, and with the row NULL above the header; or NULL. */
     void (*above)(void *context, const void *row, FILE *out);
-    const char *(*color)(const void *row);   /* pages: colour of a dot before the row; or NULL */
     RtStanding (*standing)(const void *row); /* pages; NULL: no marks */
     const char *caption;                     /* LaTeX, pages; or NULL */
     bool wide;                               /* LaTeX: as wide as both columns of an article */
@@ -219,7 +218,7 @@ json_t *rt_table_json(const RtTable *table);
 json_t *rt_row_json(const RtColumnGroup *groups, size_t count, const void *row);
 
 /* A table for the script of a page: {"title": the caption, "columns": [{"id", "name", "meaning", "number"}],
- * "rows": [{"color", "standing": "" or "level" or "best", "fields"}]}. A field is its text; that of a number
+ * "rows": [{"standing": "" or "level" or "best", "fields"}]}. A field is its text; that of a number
  * or with a note is [text, number or null, note]. A new reference; NULL or incomplete if memory is short. */
 json_t *rt_table_page(const RtTable *table);
 

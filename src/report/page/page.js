@@ -1,7 +1,7 @@
 'use strict';
-// What the data of a page adds to it. A report has `sections` (tables of each scene), `frames` (tables of the answer), `papers`, and
-// what describes the method: `manifest`, `counters`, `interval`, `null_runs`, `learnt`, `left_out`, `count_only`. An index has
-// `papers`. src/core/text/table.h says what a table is. Question, answer and plots are there without any of it.
+// What the data of a page adds to it. A report has `sections` (tables of each scene), `frames` (tables of the answer), `verdict` (its claims), `papers`, and
+// what describes the method: `manifest`, `colors` (by label), `counters`, `interval`, `null_runs`, `learnt`, `left_out`, `count_only`. An index has
+// `papers` and `verdicts` (the claims of each experiment). src/core/text/table.h says what a table is. Question, answer and plots are there without any of it.
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
   const all = (selector, root = document) => [...root.querySelectorAll(selector)];
@@ -10,6 +10,11 @@
     element.append(...children);
     return element;
   };
+
+  // `code` and **bold** in sentences, as in Markdown.
+  const markUp = (text) => text.split(/(`[^`]*`|\*\*.*?\*\*)/).map((part, i) => i % 2 === 0 ? part :
+    part.startsWith('`') ? make('code', {}, part.slice(1, -1)) : make('b', {}, ...markUp(part.slice(2, -2))));
+  for (const text of all('.card p, .card strong')) if (!text.children.length) text.replaceChildren(...markUp(text.textContent));
 
   // ---- tables ----
 
@@ -25,7 +30,8 @@
   const makeRow = (row, columns) => {
     const line = make('tr', {}, ...row.fields.map((field, i) => makeField(field, columns[i], i ? '' : marks[row.standing])));
     if (row.standing) line.className = 'best';
-    if (row.color) line.style.setProperty('--dot', row.color);
+    const labels = row.fields.filter((_, i) => columns[i].id === 'accel' || columns[i].id === 'label').flat();
+    if (labels.length && data.colors) line.style.setProperty('--dot', data.colors[labels[0]]);
     return line;
   };
   const key = (cell) => {
@@ -84,6 +90,30 @@
   filter.append(make('label', { htmlFor: 'words' }, data.sections ? 'Rows with' : 'Experiments with'), input, said);
   if (data.sections) place.append(filter, ...data.sections.map(makeSection));
   else document.querySelector('h2')?.before(filter);
+
+  // ---- claims ----
+
+  const classes = { 'holds': 'holds', 'does not hold': 'false', 'figure': 'readout' };
+  const makeBadge = (text, name = 'open') => make('span', { className: `verdict ${name}` }, text);
+  // "3 of 4 claims hold, 1 does not", in the colour of the worst verdict; or that there are no claims.
+  const makeVerdict = ({ claims }) => {
+    const count = (verdict) => claims.filter((claim) => claim.verdict === verdict).length;
+    const judged = claims.length - count('figure'), wrong = count('does not hold'), open = count('undecided'), missing = count('no measurements');
+    const texts = [judged ? `${count('holds')} of ${judged} ${judged === 1 ? 'claim holds' : 'claims hold'}` : 'not judged',
+      wrong && `${wrong} ${wrong === 1 ? 'does' : 'do'} not`, open && `${open} undecided`, missing && `${missing} without measurements`];
+    return makeBadge(texts.filter(Boolean).join(', '), wrong ? 'false' : judged && !open && !missing ? 'holds' : 'open');
+  };
+  const makeClaim = ({ text, verdict, figures, later }) => make('li', {}, makeBadge(verdict, classes[verdict]), ` ${text} `,
+    ...(later ? [makeBadge(later)] : []), make('small', {}, figures));
+  if (data.verdict) {
+    const { claims, dropped, level } = data.verdict;
+    document.getElementById('verdict').append(make('section', { className: 'card' }, make('h2', {}, 'Verdict'),
+      paragraph(makeVerdict(data.verdict), ...(claims.length ? [] : [' The prediction states no claims (', make('code', {}, 'expect'), ') to check.'])),
+      make('ul', { className: 'claims' }, ...claims.map(makeClaim),
+        ...dropped.map((text) => make('li', {}, makeBadge('dropped after the run began'), ` ${text}`))),
+      make('p', { className: 'meta' }, level)));
+  }
+  for (const [name, verdict] of Object.entries(data.verdicts ?? {})) document.getElementById(name).lastElementChild.append(makeVerdict(verdict));
 
   // ---- literature and method ----
 
@@ -149,6 +179,12 @@
   // ---- plots and print ----
 
   for (const plot of all('.plot')) {
+    const image = plot.querySelector('img'), size = () => {
+      image.width = image.naturalWidth;
+      plot.style.setProperty('--w', `${image.naturalWidth}px`);
+    };
+    if (image.complete) size();
+    else image.addEventListener('load', size);
     const button = make('button', { type: 'button', className: 'enlarge' }, 'Enlarge');
     button.setAttribute('aria-label', 'Enlarge ' + plot.getAttribute('aria-label'));
     button.setAttribute('aria-pressed', 'false');
