@@ -105,11 +105,6 @@ uint32_t rt_split_median(RtTreeRef *refs, uint32_t count) {
 
 enum { DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS, CHUNK = 1 << 14 };
 
-/* The next position of the items of a chunk, by digit. */
-typedef struct Offsets {
-    uint32_t of[DIGITS];
-} Offsets;
-
 /* The chunks do not affect the order. */
 typedef struct Sorter {
     const RtBox *boxes;
@@ -118,8 +113,8 @@ typedef struct Sorter {
     int axis;
     RtKeyed *items, *out;
     uint32_t count, chunk_size, shift;
-    Offsets *offsets;  /* [chunks] */
-    RtBox *centers_of; /* [chunks] */
+    uint32_t (*offsets)[DIGITS]; /* [chunks] the next position of the items of a chunk, by digit */
+    RtBox *centers_of;           /* [chunks] */
 } Sorter;
 
 static uint32_t chunk_begin(const Sorter *s, size_t chunk) {
@@ -141,15 +136,15 @@ static void find_centers(void *context, size_t chunk) {
 
 static void count_digits(void *context, size_t chunk) {
     Sorter *s = context;
-    uint32_t *offset = s->offsets[chunk].of;
-    memset(offset, 0, sizeof(Offsets));
+    uint32_t *offset = s->offsets[chunk];
+    memset(offset, 0, sizeof *s->offsets);
     for (uint32_t i = chunk_begin(s, chunk); i < chunk_end(s, chunk); i++)
         offset[s->items[i].key >> s->shift & (DIGITS - 1)]++;
 }
 
 static void move_items(void *context, size_t chunk) {
     Sorter *s = context;
-    uint32_t *offset = s->offsets[chunk].of;
+    uint32_t *offset = s->offsets[chunk];
     for (uint32_t i = chunk_begin(s, chunk); i < chunk_end(s, chunk); i++)
         s->out[offset[s->items[i].key >> s->shift & (DIGITS - 1)]++] = s->items[i];
 }
@@ -159,9 +154,9 @@ static void move_items(void *context, size_t chunk) {
 static bool find_offsets(Sorter *s, size_t chunks) {
     for (uint32_t digit = 0, begin = 0; digit < DIGITS; digit++) {
         for (size_t c = 0; c < chunks; c++) {
-            uint32_t number = s->offsets[c].of[digit];
+            uint32_t number = s->offsets[c][digit];
             if (number == s->count && chunks == 1) return false;
-            s->offsets[c].of[digit] = begin;
+            s->offsets[c][digit] = begin;
             begin += number;
         }
     }
@@ -227,7 +222,7 @@ RtStatus rt_tree_order(const RtGeometry *geometry, uint32_t bits, int axis, int 
     const size_t chunks = count / s.chunk_size + 1;
     s.items = rt_arena_alloc_unset(memory, count, sizeof(RtKeyed));
     s.out = rt_arena_alloc_unset(memory, count, sizeof(RtKeyed));
-    s.offsets = rt_arena_alloc(memory, chunks, sizeof(Offsets));
+    s.offsets = rt_arena_alloc(memory, chunks, sizeof *s.offsets);
     s.centers_of = rt_arena_alloc(memory, chunks, sizeof(RtBox));
     RT_TRY(rt_arena_check(memory, "an order of objects", error));
     RT_TRY(rt_parallel_each(chunks, threads, find_centers, &s, error));

@@ -15,9 +15,6 @@
  * any number of rays in flight. */
 #include "accel/wide/wide.h"
 
-/* Parameters of `bvh` that are constants here. */
-enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
-
 #define PARAMS(X)                                                                                            \
     X(PARAM_BUILD, "build", RT_CHOICE("binned", RT_TREE_METHODS),                                            \
       "builder of the binary tree, as for bvh; its nodes are then merged into nodes of eight", "Wald 2007")  \
@@ -71,8 +68,8 @@ static RtStatus fill(RtWide *self, int place, const RtBuild *what, RtTreeMethod 
     const RtGeometry *geometry = &what->scene->geometry;
     const RtValue *values = what->values;
     const RtTreeOptions options = {.method = method,
-                                   .bits = MORTON_BITS,
-                                   .radius = PLOC_RADIUS,
+                                   .bits = RT_MAX_MORTON_BITS,
+                                   .radius = 25, /* the default of `bvh` */
                                    .spatial = {.bins = (int)values[PARAM_BINS].i,
                                                .alpha = values[PARAM_ALPHA].f,
                                                .budget = values[PARAM_BUDGET].f,
