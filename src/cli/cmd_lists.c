@@ -135,13 +135,13 @@ RtStatus rt_command_scenes(int argc, char **argv, RtError *error) {
     const RtBuiltin *only = NULL;
     if (o.name) RT_TRY(rt_builtin_named(o.name, &only, error));
     json_t *list = json_array();
-    for (size_t i = 0; i < rt_builtin_count(); i++) {
-        if (only && rt_builtin_at(i) != only) continue;
-        if (o.json) {
-            json_array_append_new(list, scene_json(rt_builtin_at(i)));
-        } else {
-            print_scene(rt_builtin_at(i));
-        }
+    const RtBuiltin *builtin;
+    for (size_t i = 0; (builtin = rt_builtin_at(i)); i++) {
+        if (only && builtin != only) continue;
+        if (o.json)
+            json_array_append_new(list, scene_json(builtin));
+        else
+            print_scene(builtin);
     }
     return finish(&o, "scenes", list,
                   "A built-in scene is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in balls:size=5.");
