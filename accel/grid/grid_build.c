@@ -6,9 +6,9 @@
  * An object goes into all voxels that its box meets, or with overlap=exact into those of them that its
  * surface comes within `margin` of, found by bisecting the range of voxels that the box meets. Why surfaces
  * suffice: grid.c proves that the walk visits every voxel, on every level, whose three intervals contain the
- * thick ray at the t of a hit; accel/clipping.h, that the voxels of its q are among those and list the object.
- * A range is rejected only if none of its voxels comes near. `slack` adds to both distances, which only
- * lengthens lists. */
+ * thick ray at the t of a hit; accel/clipping.h, that the voxels of its q are among those and list the
+ * object. A range is rejected only if none of its voxels comes near. `slack` adds to both distances, which
+ * only lengthens lists. */
 #include "accel/grid/grid.h"
 
 #include "accel/mailbox.h"
