@@ -6,7 +6,6 @@
 #include "core/scene/load.h"
 #include "scenes/open.h"
 
-#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -20,13 +19,8 @@ static const RtBuiltin *const builtins[] = {
 
 enum { BUILTIN_COUNT = sizeof builtins / sizeof builtins[0] };
 
-size_t rt_builtin_count(void) {
-    return BUILTIN_COUNT;
-}
-
 const RtBuiltin *rt_builtin_at(size_t i) {
-    assert(i < BUILTIN_COUNT);
-    return builtins[i];
+    return i < BUILTIN_COUNT ? builtins[i] : NULL;
 }
 
 const RtBuiltin *rt_builtin_find(const char *spec) {

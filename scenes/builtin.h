@@ -34,7 +34,7 @@ extern const RtBuiltin rt_builtin_balls, rt_builtin_city, rt_builtin_csg_field, 
     rt_builtin_mount, rt_builtin_random, rt_builtin_rings, rt_builtin_shells, rt_builtin_stadium,
     rt_builtin_teapot, rt_builtin_tetra, rt_builtin_tree;
 
-size_t rt_builtin_count(void);
+/* Scene `i` in the order of listing; NULL after the last. */
 const RtBuiltin *rt_builtin_at(size_t i);
 
 /* Finds the scene named by `spec` up to a colon; NULL if there is none. */

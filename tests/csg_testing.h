@@ -51,6 +51,16 @@ static inline RtCsg compile(RtCsgForest *forest, const RtCsgBuilder *builder, Rt
     return tree;
 }
 
+/* A copy of a tree of any forest, moved by `move` (NULL: in place). */
+static inline RtCsg copied(RtCsgForest *forest, const RtCsgForest *from, const RtCsg *tree,
+                           const RtTransform *move) {
+    OWNED_BUILDER builder = {0};
+    RtCsgTerm root;
+    assert_ok(rt_csg_recover(&builder, from, tree, &root, error));
+    if (move) assert_ok(rt_csg_move(&builder, root, move, &root, error));
+    return compile(forest, &builder, root);
+}
+
 static inline RtCsgTerm combine(RtCsgBuilder *builder, RtCsgOp op, RtCsgTerm left, RtCsgTerm right) {
     RtCsgTerm term;
     assert_ok(rt_csg_combine(builder, op, left, right, &term, error));

@@ -122,8 +122,8 @@ RtStatus rt_command_scenes(int argc, char **argv, RtError *error) {
     const RtBuiltin *only = NULL;
     if (o.name) RT_TRY(rt_builtin_named(o.name, &only, error));
     json_t *list = json_array();
-    for (size_t i = 0; i < rt_builtin_count(); i++) {
-        const RtBuiltin *b = rt_builtin_at(i);
+    const RtBuiltin *b;
+    for (size_t i = 0; (b = rt_builtin_at(i)); i++) {
         if (only && b != only) continue;
         if (o.json) {
             json_t *params = params_json(b->params, b->param_count);

@@ -21,7 +21,7 @@ static void check_answered(const RtScene *scene) {
 }
 
 RT_TEST(all_primary_rays_of_every_builtin_scene_are_answered) {
-    for (size_t i = 0; i < rt_builtin_count(); i += RT_SHARE(1, 5)) {
+    for (size_t i = 0; rt_builtin_at(i); i += RT_SHARE(1, 5)) {
         OWNED_SCENE scene = open_scene(rt_builtin_at(i)->name);
         check_answered(&scene);
         assert_ok(rt_scene_sample(&scene, 0, 0, 1, true, error));

@@ -13,29 +13,12 @@
 
 enum { RAYS = 2000, OBJECTS = 40 };
 
-/* X(CONSTANT, name): the shapes in their order (core/shape/geometry.h), and trees of one kind of solid: of
- * spheres and boxes; of a mesh, which is an octahedron; and of a torus. */
-#define SUBJECTS(X)                                                                                          \
-    X(SPHERE, sphere)                                                                                        \
-    X(POLYGON, polygon)                                                                                      \
-    X(TRIANGLE, triangle)                                                                                    \
-    X(CONE, cone)                                                                                            \
-    X(CSG, csg)                                                                                              \
-    X(MESH, mesh)                                                                                            \
-    X(TORUS, torus)
+/* The shapes in their order (core/shape/geometry.h), and trees of one kind of solid: of spheres and boxes; of
+ * a mesh, which is an octahedron; and of a torus. */
+typedef enum Subject { SPHERE, POLYGON, TRIANGLE, CONE, CSG, MESH, TORUS, SUBJECT_COUNT } Subject;
 
-typedef enum Subject {
-#define SUBJECT_ENUM(CONSTANT, name) CONSTANT,
-    SUBJECTS(SUBJECT_ENUM)
-#undef SUBJECT_ENUM
-        SUBJECT_COUNT
-} Subject;
-
-static const char *const names[SUBJECT_COUNT] = {
-#define SUBJECT_NAME(CONSTANT, name) #name,
-    SUBJECTS(SUBJECT_NAME)
-#undef SUBJECT_NAME
-};
+static const char *const names[SUBJECT_COUNT] = {"sphere", "polygon", "triangle", "cone",
+                                                 "csg",    "mesh",    "torus"};
 
 typedef enum Aim { AIM_BOX, AIM_GRAZING, AIM_BORDER, AIM_LATTICE, AIM_LEAVING } Aim;
 

@@ -13,9 +13,9 @@ static RtRay ray_from(float x, float y, float z, float dx, float dy, float dz) {
 }
 
 /* t, INFINITY for a miss. */
-static long double first_t(const RtGeometry *g, uint32_t id, const RtRay *ray) {
+static long double first_t(const RtGeometry *g, uint32_t id, RtRay ray) {
     long double t = HUGE_VALL;
-    RtWideRay line = rt_wide_ray(ray);
+    RtWideRay line = rt_wide_ray(&ray);
     assert_int_not_equal(rt_referee_hit(g, id, &line, &t), RT_UNDECIDED);
     return t;
 }
@@ -23,13 +23,13 @@ static long double first_t(const RtGeometry *g, uint32_t id, const RtRay *ray) {
 static long double first_t_within(const RtGeometry *g, uint32_t id, RtRay ray, float tmin, float tmax) {
     ray.tmin = tmin;
     ray.tmax = tmax;
-    return first_t(g, id, &ray);
+    return first_t(g, id, ray);
 }
 
 RT_TEST(the_unit_sphere_is_met_at_9_and_11) {
     OWNED_OBJECT(g, sphere, rt_vec3(0, 0, 0), 1);
     RtRay ray = ray_from(0, 0, 10, 0, 0, -1);
-    assert_true(first_t(&g, 0, &ray) == 9);
+    assert_true(first_t(&g, 0, ray) == 9);
     assert_true(first_t_within(&g, 0, ray, 9, 9) == 9);
     assert_true(first_t_within(&g, 0, ray, nextafterf(9, 10), INFINITY) == 11);
     assert_true(first_t_within(&g, 0, ray, nextafterf(9, 10), nextafterf(11, 10)) == HUGE_VALL);
@@ -43,9 +43,9 @@ RT_TEST(a_sphere_is_touched_in_one_point_exactly) {
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 1, 0), nextafterf(5, 6), error));
     assert_ok(rt_geometry_finish(&g, error));
     RtRay ray = ray_from(4, 5, -10, 0, 0, 2);
-    assert_true(first_t(&g, 0, &ray) == 5);
-    assert_true(first_t(&g, 1, &ray) == HUGE_VALL);
-    assert_true(first_t(&g, 2, &ray) < 5 && first_t(&g, 2, &ray) > 4.99L);
+    assert_true(first_t(&g, 0, ray) == 5);
+    assert_true(first_t(&g, 1, ray) == HUGE_VALL);
+    assert_true(first_t(&g, 2, ray) < 5 && first_t(&g, 2, ray) > 4.99L);
 }
 
 /* Corners (0, 0), (4, 0), (0, 4) at z = 0; the edge between the last two is x + y = 4. */
@@ -71,12 +71,12 @@ RT_TEST(edges_and_vertices_belong_to_triangles_and_polygons) {
         for (uint32_t id = 0; id < 3; id++) {
             RtRay down = ray_from(points[i].x, points[i].y, 3, 0, 0, -2);
             long double expected = points[i].in[id] ? 1.5L : HUGE_VALL;
-            if (first_t(&g, id, &down) != expected) fail_msg("point %zu, object %u", i, id);
+            if (first_t(&g, id, down) != expected) fail_msg("point %zu, object %u", i, id);
         }
     }
-    RtRay along = ray_from(-1, 1, 0, 1, 0, 0), through_needle = ray_from(1, 1, 1, 0, 0, -1);
-    for (uint32_t id = 0; id < 3; id++) assert_true(first_t(&g, id, &along) == HUGE_VALL);
-    assert_true(first_t(&g, 3, &through_needle) == HUGE_VALL);
+    for (uint32_t id = 0; id < 3; id++)
+        assert_true(first_t(&g, id, ray_from(-1, 1, 0, 1, 0, 0)) == HUGE_VALL);
+    assert_true(first_t(&g, 3, ray_from(1, 1, 1, 0, 0, -1)) == HUGE_VALL);
 }
 
 /* The vertices are those of a square but for one ulp: they lie in no plane. The hit is in the plane that is
@@ -85,8 +85,7 @@ RT_TEST(a_polygon_that_is_not_planar_has_one_plane_all_the_same) {
     float one = 1, above = nextafterf(1, 2);
     const RtVec3 v[4] = {{0, 0, one}, {1, 0, one}, {1, 1, above}, {0, 1, one}};
     OWNED_OBJECT(g, polygon, v, 4);
-    RtRay middle = ray_from(0.5f, 0.5f, 2, 0, 0, -1);
-    assert_true(first_t(&g, 0, &middle) == 1 - 0x1p-25L);
+    assert_true(first_t(&g, 0, ray_from(0.5f, 0.5f, 2, 0, 0, -1)) == 1 - 0x1p-25L);
 }
 
 /* A cylinder of radius 5 about x: met at 3-4-5; a full cone with its tip at the origin, at 45 degrees. */
@@ -95,18 +94,14 @@ RT_TEST(circles_and_the_tip_belong_to_cones) {
     assert_ok(rt_geometry_add_cone(&g, rt_vec3(-2, 0, 0), 5, rt_vec3(2, 0, 0), 5, error));
     assert_ok(rt_geometry_add_cone(&g, rt_vec3(2, 0, 0), 2, rt_vec3(0, 0, 0), 0, error));
     assert_ok(rt_geometry_finish(&g, error));
-    RtRay at_end = ray_from(2, 3, 10, 0, 0, -1), beyond = ray_from(nextafterf(2, 3), 3, 10, 0, 0, -1);
-    assert_true(first_t(&g, 0, &at_end) == 6);
-    assert_true(first_t(&g, 0, &beyond) == HUGE_VALL);
-    RtRay inside = ray_from(-9, 0, 0, 1, 0, 0), tangent = ray_from(0, 5, 10, 0, 0, -1);
-    assert_true(first_t(&g, 0, &inside) == HUGE_VALL);
-    assert_true(first_t(&g, 0, &tangent) == 10);
-    RtRay tip = ray_from(0, 0, 10, 0, 0, -1), generator = ray_from(3, 3, 0, -1, -1, 0);
-    assert_true(first_t(&g, 1, &tip) == 10);
-    assert_true(first_t(&g, 1, &generator) == HUGE_VALL);
-    RtRay axis = ray_from(-1, 0, 0, 1, 0, 0), across = ray_from(-1, 1, 0, 1, 0, 0);
-    assert_true(first_t(&g, 1, &axis) == 1);
-    assert_true(first_t(&g, 1, &across) == 2);
+    assert_true(first_t(&g, 0, ray_from(2, 3, 10, 0, 0, -1)) == 6);
+    assert_true(first_t(&g, 0, ray_from(nextafterf(2, 3), 3, 10, 0, 0, -1)) == HUGE_VALL);
+    assert_true(first_t(&g, 0, ray_from(-9, 0, 0, 1, 0, 0)) == HUGE_VALL);  /* inside */
+    assert_true(first_t(&g, 0, ray_from(0, 5, 10, 0, 0, -1)) == 10);        /* a tangent */
+    assert_true(first_t(&g, 1, ray_from(0, 0, 10, 0, 0, -1)) == 10);        /* at the tip */
+    assert_true(first_t(&g, 1, ray_from(3, 3, 0, -1, -1, 0)) == HUGE_VALL); /* along the side */
+    assert_true(first_t(&g, 1, ray_from(-1, 0, 0, 1, 0, 0)) == 1);          /* along the axis */
+    assert_true(first_t(&g, 1, ray_from(-1, 1, 0, 1, 0, 0)) == 2);
 }
 
 /* ---- order ---- */
@@ -172,13 +167,13 @@ RT_TEST(huge_and_denormal_numbers_are_as_exact_as_others) {
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0x1p58f, 0), 0x1p57f, error));
     assert_ok(rt_geometry_finish(&g, error));
     RtRay denormal = ray_from(0x1p-140f, 0, 0x1p-130f, 0, 0, -0x1p-149f);
-    assert_true(first_t(&g, 0, &denormal) == 0x1p19L);
+    assert_true(first_t(&g, 0, denormal) == 0x1p19L);
     denormal.org.x = 0x1.01p-140f;
-    assert_true(first_t(&g, 0, &denormal) == HUGE_VALL);
+    assert_true(first_t(&g, 0, denormal) == HUGE_VALL);
     RtRay far = ray_from(0, 0x1p58f, 0x1p58f, 0, 0, -0x1p-60f);
-    assert_true(first_t(&g, 1, &far) == 0x1p117L);
+    assert_true(first_t(&g, 1, far) == 0x1p117L);
     far.dir.z = -0x1p-100f; /* t = 2^157 is beyond the largest float32 */
-    assert_true(first_t(&g, 1, &far) == HUGE_VALL);
+    assert_true(first_t(&g, 1, far) == HUGE_VALL);
     assert_int_equal(rt_referee_nearest(&g, &far).result, RT_MISSED);
 }
 
@@ -203,19 +198,19 @@ RT_TEST(trees_are_met_where_their_inside_begins_and_ends) {
     assert_ok(rt_geometry_finish(&g, error));
     RtRay x = ray_from(-8, 0, 0, 1, 0, 0), within = x;
     within.tmin = 4;
-    assert_true(first_t(&g, 0, &x) == 3);
-    assert_true(first_t(&g, 0, &within) == 23); /* no wall where they touch */
-    assert_true(first_t(&g, 1, &x) == 3);
-    assert_true(first_t(&g, 1, &within) == 7);
-    assert_true(first_t(&g, 2, &x) == 7);
+    assert_true(first_t(&g, 0, x) == 3);
+    assert_true(first_t(&g, 0, within) == 23); /* no wall where they touch */
+    assert_true(first_t(&g, 1, x) == 3);
+    assert_true(first_t(&g, 1, within) == 7);
+    assert_true(first_t(&g, 2, x) == 7);
     assert_true(first_t_within(&g, 2, x, 8, INFINITY) == 13);
-    assert_true(first_t(&g, 3, &x) == HUGE_VALL);
-    assert_true(first_t(&g, 4, &x) == 9);
+    assert_true(first_t(&g, 3, x) == HUGE_VALL);
+    assert_true(first_t(&g, 4, x) == 9);
     assert_true(first_t_within(&g, 4, x, nextafterf(9, 10), INFINITY) == HUGE_VALL);
-    assert_true(first_t(&g, 5, &x) == 8);
+    assert_true(first_t(&g, 5, x) == 8);
     assert_true(first_t_within(&g, 5, x, 9, INFINITY) == 16);
-    RtRay down = ray_from(4, 0, 8, 0, 0, -1); /* the cone's radius is 2.5 there */
-    assert_true(fabsl(first_t(&g, 5, &down) - 5.5L) <= 0x1p-50L);
+    /* The cone's radius is 2.5 there. */
+    assert_true(fabsl(first_t(&g, 5, ray_from(4, 0, 8, 0, 0, -1)) - 5.5L) <= 0x1p-50L);
 }
 
 /* ---- judging ---- */

@@ -98,9 +98,8 @@ RT_TEST(a_tree_may_be_appended_under_any_transform) {
             assert_int_equal(g->forest.set.solids[i].material, material);
             assert_int_equal(g->forest.set.solids[g->csgs[1].first_solid + i].material, material);
         }
-        RtCsg moved;
         OWNED_FOREST forest = {0};
-        assert_ok(rt_csg_copy(&forest, &from.geometry.forest, from.geometry.csgs, &uneven, &moved, error));
+        RtCsg moved = copied(&forest, &from.geometry.forest, from.geometry.csgs, &uneven);
         for (uint32_t i = 0; i < 200; i++) {
             RtRay ray = tree_ray(&random, i);
             Hits first = hits_of(&g->forest, &g->csgs[0], &ray), wanted = hits_of(&forest, &moved, &ray);

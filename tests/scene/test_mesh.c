@@ -166,16 +166,6 @@ RT_TEST(polygons_of_any_form_become_triangles_that_cover_them) {
     }
 }
 
-RT_TEST(a_polygon_that_crosses_itself_is_refused) {
-    static const char *const texts[] = {"v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 3 0\nf 1 2 3 4\n",
-                                        "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\nf 1 2 3 4\n"};
-    for (int i = 0; i < 2; i++) {
-        RtScene scene;
-        assert_bad_input_at(open_bytes(OBJ_NAME, texts[i], strlen(texts[i]), &scene, error),
-                            OBJ_NAME ":5: ", "face 0 (counted from 0) crosses itself");
-    }
-}
-
 /* ---- formats ---- */
 
 RT_TEST(every_way_to_write_a_corner_of_obj_is_read) {

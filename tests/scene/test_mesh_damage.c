@@ -197,6 +197,8 @@ RT_TEST(a_damaged_obj_is_refused_with_its_line) {
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/ 2 3\n", "4:", "expected v, v/vt, v//vn or v/vt/vn"},
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/// 2 3\n", "4:", "expected v, v/vt, v//vn or v/vt/vn"},
         {"v 0 0 0\nv 1 0 0\nf 1 2\n", "3:", "has 2 vertices: a polygon has at least 3"},
+        {"v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 3 0\nf 1 2 3 4\n", "5:", "face 0 (counted from 0) crosses itself"},
+        {"v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\nf 1 2 3 4\n", "5:", "face 0 (counted from 0) crosses itself"},
         {"v 0 0 0\nsurf 0 1 0 1\n", "2:", "expected a statement of a polygon mesh"},
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "4:", "the last line has no line break"},
     };

@@ -144,7 +144,7 @@ RT_TEST(objects_are_as_many_as_told_beforehand_and_take_no_more_memory_than_esti
                                        "stadium:size=2",          "hall:size=3",
                                        "forest:n=30,seed=5",      "city:size=3,seed=9"};
     enum { MORE = sizeof more / sizeof more[0] };
-    for (size_t i = 0; i < rt_builtin_count() + MORE; i++) {
+    for (size_t i = 0; i < MORE || rt_builtin_at(i - MORE); i++) {
         const char *spec = i < MORE ? more[i] : rt_builtin_at(i - MORE)->name;
         const RtBuiltin *builtin;
         RtValue values[RT_MAX_PARAMS];
@@ -166,8 +166,8 @@ RT_TEST(the_count_of_objects_of_every_family_is_told_beforehand) {
 }
 
 RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {
-    for (size_t i = 0; i < rt_builtin_count(); i++) { /* the smallest scene of each */
-        const RtBuiltin *builtin = rt_builtin_at(i);
+    const RtBuiltin *builtin;
+    for (size_t i = 0; (builtin = rt_builtin_at(i)); i++) { /* the smallest scene of each */
         char spec[RT_MAX_NAME + 32];
         snprintf(spec, sizeof spec, "%s:%s=%.0f", builtin->name, builtin->params[0].name,
                  builtin->params[0].lo);

@@ -123,8 +123,7 @@ RT_TEST(moving_the_tree_and_moving_the_ray_agree) {
         assert_ok(rt_transform_rotate(&move, axis, rt_random_betweend(&random, 0, 360), error));
         assert_ok(rt_transform_scale(&move, rt_vec3(1.5f, 0.5f, 2), error));
         assert_ok(rt_transform_translate(&move, rt_vec3(1, 2, 3), error));
-        RtCsg here = compile(&forest, &b, root), there;
-        assert_ok(rt_csg_copy(&forest, &forest, &here, &move, &there, error));
+        RtCsg here = compile(&forest, &b, root), there = copied(&forest, &forest, &here, &move);
         for (uint32_t i = 1; i < 400; i += 2) {
             RtRay ray = tree_ray(&random, i), same = ray;
             same.org = rt_transform_point(&move, ray.org);
@@ -148,8 +147,8 @@ RT_TEST(a_copied_tree_is_the_same_tree) {
     for (uint32_t round = 0; round < 50; round++) {
         OWNED_BUILDER b = {0};
         OWNED_FOREST forest = {0}, other = {0};
-        RtCsg tree = compile(&forest, &b, random_term(&b, &random, 30, round % 2)), copy;
-        assert_ok(rt_csg_copy(&other, &forest, &tree, NULL, &copy, error));
+        RtCsg tree = compile(&forest, &b, random_term(&b, &random, 30, round % 2));
+        RtCsg copy = copied(&other, &forest, &tree, NULL);
         assert_int_equal(copy.count, tree.count);
         assert_int_equal(copy.solid_count, tree.solid_count);
         assert_memory_equal(&copy.box, &tree.box, sizeof copy.box);

@@ -11,7 +11,8 @@
 #include <string.h>
 
 typedef struct Pool {
-    RtWork work;
+    RtWork work;     /* or */
+    RtSureWork sure; /* which cannot fail */
     void *context;
     size_t items;
     atomic_size_t next;
@@ -84,37 +85,32 @@ static void run_items(void *shared, int thread) {
         size_t item = atomic_fetch_add(&pool->next, 1);
         if (item >= pool->items) break;
         RtError error = {RT_OK, ""};
-        RtStatus status = pool->work(pool->context, item, thread, &error);
+        RtStatus status = RT_OK;
+        if (pool->sure)
+            pool->sure(pool->context, item);
+        else
+            status = pool->work(pool->context, item, thread, &error);
         if (status != RT_OK) record_failure(pool, item, status, &error);
     }
 }
 
-RtStatus rt_parallel_for(size_t items, int threads, RtWork work, void *context, RtError *error) {
+static RtStatus run_pool(Pool *pool, int threads, RtError *error) {
     int count = rt_thread_count(threads);
-    if ((size_t)count > items) count = items > 0 ? (int)items : 1;
-    Pool pool = {.work = work, .context = context, .items = items, .status = RT_OK};
-    pthread_mutex_init(&pool.lock, NULL);
-    RtStatus status = run_all(run_items, &pool, count, error);
-    pthread_mutex_destroy(&pool.lock);
+    if ((size_t)count > pool->items) count = pool->items > 0 ? (int)pool->items : 1;
+    pthread_mutex_init(&pool->lock, NULL);
+    RtStatus status = run_all(run_items, pool, count, error);
+    pthread_mutex_destroy(&pool->lock);
     if (status != RT_OK) return status;
-    if (pool.status != RT_OK && error) *error = pool.error;
-    return pool.status;
+    if (pool->status != RT_OK && error) *error = pool->error;
+    return pool->status;
 }
 
-typedef struct SureJob {
-    RtSureWork work;
-    void *context;
-} SureJob;
-
-static RtStatus run_sure(void *context, size_t item, int thread, RtError *error) {
-    const SureJob *job = context;
-    (void)thread, (void)error;
-    job->work(job->context, item);
-    return RT_OK;
+RtStatus rt_parallel_for(size_t items, int threads, RtWork work, void *context, RtError *error) {
+    return run_pool(&(Pool){.work = work, .context = context, .items = items}, threads, error);
 }
 
 RtStatus rt_parallel_each(size_t items, int threads, RtSureWork work, void *context, RtError *error) {
-    return rt_parallel_for(items, threads, run_sure, &(SureJob){work, context}, error);
+    return run_pool(&(Pool){.sure = work, .context = context, .items = items}, threads, error);
 }
 
 /* ---- tasks that create tasks ---- */

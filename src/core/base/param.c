@@ -64,9 +64,8 @@ void rt_param_range(const RtParam *param, char *out, size_t size) {
 }
 
 bool rt_param_try(const RtParam *param, size_t n, char *out, size_t size) {
-    const char *list = param->type == RT_PARAM_FLAG && !param->test_values     ? "on|off"
-                       : param->type == RT_PARAM_CHOICE && !param->test_values ? param->choices
-                                                                               : param->test_values;
+    const char *all = param->type == RT_PARAM_FLAG ? "on|off" : param->choices;
+    const char *list = param->test_values ? param->test_values : all;
     size_t length;
     const char *text = piece(list, n, &length);
     if (text) snprintf(out, size, "%.*s", (int)length, text);

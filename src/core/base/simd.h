@@ -125,9 +125,9 @@ RT_DEFINE_VECTORS(16, 8)
 #endif
 
 /* A function of a; of a and b. */
-#define RT_DEFINE_OF_ONE(Result, name, Type, value)                                                          \
+#define RT_DEFINE_OF_ONE(Result, name, Type, ...)                                                            \
     RT_INLINE Result name(Type a) {                                                                          \
-        return value;                                                                                        \
+        return __VA_ARGS__;                                                                                  \
     }
 #define RT_DEFINE_OF_TWO(Type, name, value)                                                                  \
     RT_INLINE Type name(Type a, Type b) {                                                                    \

@@ -196,26 +196,20 @@ RT_INLINE void rt_transpose4(RtFloat4 rows[4]) {
  * of each group, a constant, in all of the group. */
 enum { RT_GROUPS = RT_LANES / 4 };
 #if RT_AVX512
-RT_INLINE RtFloats rt_repeat4(RtFloat4 a) {
-    return _mm512_broadcast_f32x4(a);
-}
+RT_DEFINE_OF_ONE(RtFloats, rt_repeat4, RtFloat4, _mm512_broadcast_f32x4(a))
 RT_INLINE RtFloats rt_load_groups(const float *const at[RT_GROUPS]) {
     __m512 joined = _mm512_insertf32x4(_mm512_castps128_ps512(rt_loadu4(at[0])), rt_loadu4(at[1]), 1);
     return _mm512_insertf32x4(_mm512_insertf32x4(joined, rt_loadu4(at[2]), 2), rt_loadu4(at[3]), 3);
 }
 #define rt_spread4(a, i) ((RtFloats)_mm512_permute_ps(a, 0x55 * (i)))
 #elif RT_LANES == 8
-RT_INLINE RtFloats rt_repeat4(RtFloat4 a) {
-    return _mm256_set_m128(a, a);
-}
+RT_DEFINE_OF_ONE(RtFloats, rt_repeat4, RtFloat4, _mm256_set_m128(a, a))
 RT_INLINE RtFloats rt_load_groups(const float *const at[RT_GROUPS]) {
     return _mm256_set_m128(rt_loadu4(at[1]), rt_loadu4(at[0]));
 }
 #define rt_spread4(a, i) ((RtFloats)_mm256_permute_ps(a, 0x55 * (i)))
 #else
-RT_INLINE RtFloats rt_repeat4(RtFloat4 a) {
-    return a;
-}
+RT_DEFINE_OF_ONE(RtFloats, rt_repeat4, RtFloat4, a)
 RT_INLINE RtFloats rt_load_groups(const float *const at[RT_GROUPS]) {
     return rt_loadu4(at[0]);
 }
@@ -260,11 +254,7 @@ RT_INLINE float rt_least4(RtFloat4 a) {
     a = rt_min_float4(a, __builtin_shufflevector(a, a, 2, 3, 0, 1));
     return rt_min_float4(a, __builtin_shufflevector(a, a, 1, 0, 3, 2))[0];
 }
-RT_INLINE float rt_least(RtFloats a) {
-    return rt_least4(rt_fold4(a));
-}
-RT_INLINE float rt_most(RtFloats a) {
-    return -rt_least(-a);
-}
+RT_DEFINE_OF_ONE(float, rt_least, RtFloats, rt_least4(rt_fold4(a)))
+RT_DEFINE_OF_ONE(float, rt_most, RtFloats, -rt_least(-a))
 
 #endif

@@ -11,11 +11,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static RtStatus load_nff(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
-    (void)open_named;
-    return rt_nff_load(path, scene, error);
-}
-
 /* The formats of whole scenes; those of meshes follow. */
 static const struct {
     const char *extension; /* without the dot */
@@ -24,7 +19,7 @@ static const struct {
 } formats[] = {
     {"yaml", rt_yaml_load, rt_yaml_save},
     {"yml", rt_yaml_load, rt_yaml_save},
-    {"nff", load_nff, rt_nff_save},
+    {"nff", rt_nff_load, rt_nff_save},
 };
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };

@@ -44,8 +44,7 @@ typedef struct View {
     size_t stride;
 } View;
 
-enum { NO_INDEX = -1 };
-enum { UINT8 = 5121, UINT16 = 5123, UINT32 = 5125, FLOAT32 = 5126 };
+enum { NO_INDEX = -1, UINT8 = 5121, UINT16 = 5123, UINT32 = 5125, FLOAT32 = 5126 };
 
 #define MOST_INTEGER ((json_int_t)1 << 40) /* sums, and products with 2^20, fit 64 bits */
 

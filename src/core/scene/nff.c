@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* An NFF file is read whole and split into words; line ends matter only for the optional colour of
- * a light and for comments. Behind the file there is a 0, where strtod stops. Counts declared by the file are
+ * a light and for comments. Behind the file there is a 0, where strtof stops. Counts declared by the file are
  * checked against its remaining length before memory is allocated. */
 #include "core/scene/nff.h"
 
@@ -45,40 +45,25 @@ static RtStatus located(Reader *r, RtStatus status) {
 
 /* ---- numbers ---- */
 
-/* Stores to whichever of the two is not NULL. */
-static RtStatus read_number(Reader *r, const char *what, float *narrow, double *wide) {
-    enum { LONGEST = 1024 };
-    RtWord word = rt_scan_peek(&r->text);
-    char *stop = NULL;
-    double value = 0;
-    if (word.length > 0 && word.length <= LONGEST)
-        value = narrow ? (double)strtof(word.text, &stop) : strtod(word.text, &stop);
-    if (!stop || stop != word.text + word.length) return fail_inside(r, word, what);
-    if (!isfinite(value)) {
-        char text[RT_WORD_SHOWN];
-        return rt_fail_at(r->text.error, r->text.path, word.line, 0,
-                          "%s: invalid value %s: expected a finite number that fits float32", what,
-                          rt_scan_show(word, text));
-    }
-    if (narrow) *narrow = (float)value;
-    if (wide) *wide = value;
-    rt_scan_take(&r->text, word);
-    return RT_OK;
-}
-
 static RtStatus read_floats(Reader *r, const char *what, int count, float *out) {
-    for (int i = 0; i < count; i++) RT_TRY(read_number(r, what, &out[i], NULL));
+    char wanted[128];
+    snprintf(wanted, sizeof wanted, "%s: a finite number that fits float32", what);
+    for (int i = 0; i < count; i++) {
+        const RtWord word = rt_scan_peek(&r->text);
+        if (!rt_scan_float(word, &out[i])) return fail_inside(r, word, wanted);
+        rt_scan_take(&r->text, word);
+    }
     return RT_OK;
 }
 
-static RtStatus read_count(Reader *r, const char *what, double lo, double hi, uint32_t *out) {
-    double number = 0;
-    const size_t line = rt_scan_peek(&r->text).line;
-    RT_TRY(read_number(r, what, NULL, &number));
-    if (number < lo || number > hi || number != floor(number))
-        return rt_fail_at(r->text.error, r->text.path, line, 0,
-                          "%s: invalid value '%.15g': expected a whole number %.15g..%.15g", what, number, lo,
-                          hi);
+static RtStatus read_count(Reader *r, const char *what, uint32_t lo, uint32_t hi, uint32_t *out) {
+    const RtWord word = rt_scan_peek(&r->text);
+    char wanted[128], *end;
+    const unsigned long long number = strtoull(word.text, &end, 10); /* reads blanks and signs, too */
+    snprintf(wanted, sizeof wanted, "%s: a whole number %u..%u", what, lo, hi);
+    if (!isdigit((unsigned char)*word.text) || end != word.text + word.length || number < lo || number > hi)
+        return fail_inside(r, word, wanted);
+    rt_scan_take(&r->text, word);
     *out = (uint32_t)number;
     return RT_OK;
 }
@@ -304,7 +289,8 @@ RtVec3 rt_nff_light_intensity(uint32_t count) {
     return rt_vec3(i, i, i);
 }
 
-RtStatus rt_nff_load(const char *path, RtScene *scene, RtError *error) {
+RtStatus rt_nff_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
+    (void)open_named;
     char *text;
     size_t size;
     RT_TRY(rt_file_read_text(path, RT_NFF_MAX_BYTES, &text, &size, error));

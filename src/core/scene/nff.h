@@ -37,8 +37,9 @@ RtMaterial rt_nff_material(const char *name, RtVec3 color, float kd, float ks, f
 RtVec3 rt_nff_light_intensity(uint32_t count);
 
 /* Reads `path` into a scene from rt_scene_init; the caller then finishes it, or clears it after a failure.
- * Messages have the form "FILE:LINE: what is wrong, what would be right". */
-RtStatus rt_nff_load(const char *path, RtScene *scene, RtError *error);
+ * NFF names no scenes, so there is none to open. Messages have the form "FILE:LINE: what is wrong, what would
+ * be right". */
+RtStatus rt_nff_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error);
 
 /* Writes a finished scene, numbers with 9 digits: reading it back restores coordinates and radii bit for
  * bit, in the same order. Ks is the `reflection`. NFF cannot represent names, ambient terms, or a

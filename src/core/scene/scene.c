@@ -221,17 +221,16 @@ static RtStatus append_triangle(const Append *a, uint32_t material, uint32_t ind
                                  a->error);
 }
 
-static RtStatus append_csg(const Append *a, uint32_t index) {
-    RtGeometry *g = &a->to->geometry;
-    RT_TRY(reserve_material_of(a->to, 0, a->error));
-    RT_TRY(rt_geometry_copy_csg(g, &a->from->geometry, index, a->transform, a->error));
-    const RtCsg *tree = &g->csgs[g->csg_count - 1];
-    for (uint32_t i = 0; i < tree->solid_count; i++) {
-        RtSolid *solid = &g->forest.set.solids[tree->first_solid + i];
-        solid->material = a->materials[solid->material];
-    }
-    set_csg_material(a->to);
-    return RT_OK;
+static RtStatus append_csg(const Append *a, const RtCsg *tree) {
+    RtCsgBuilder builder = {0};
+    RtCsgTerm root = 0;
+    RtStatus status = rt_csg_recover(&builder, &a->from->geometry.forest, tree, &root, a->error);
+    for (uint32_t i = 0; i < builder.set.solid_count && status == RT_OK; i++)
+        builder.set.solids[i].material = a->materials[builder.set.solids[i].material];
+    if (status == RT_OK && a->transform) status = rt_csg_move(&builder, root, a->transform, &root, a->error);
+    if (status == RT_OK) status = rt_scene_add_csg(a->to, &builder, root, tree->extents, a->error);
+    rt_csg_builder_clear(&builder);
+    return status;
 }
 
 static RtStatus append_object(const Append *a, uint32_t id) {
@@ -244,7 +243,7 @@ static RtStatus append_object(const Append *a, uint32_t id) {
                                     g->polygons[index].count, a->error);
     case RT_SHAPE_TRIANGLE: return append_triangle(a, material, index);
     case RT_SHAPE_CONE: return append_cone(a, material, &g->cones[index]);
-    case RT_SHAPE_CSG: return append_csg(a, index);
+    case RT_SHAPE_CSG: return append_csg(a, &g->csgs[index]);
     case RT_SHAPE_COUNT: break;
     }
     return RT_OK;

@@ -388,8 +388,10 @@ static RtStatus move(Reader *r, const RtYamlNode *n, RtCsgTerm *term) {
     X(ellipsoid, pair)                                                                                       \
     X(box, pair)                                                                                             \
     X(half_space, pair)                                                                                      \
-    X(sphere, sphere) X(cylinder, round) X(cone, round) X(torus, torus) X(polyhedron, polyhedron)            \
-        X(mesh, mesh) X(facets, facets) X(standard, standard)
+    X(sphere, sphere)                                                                                        \
+    X(cylinder, round)                                                                                       \
+    X(cone, round)                                                                                           \
+    X(torus, torus) X(polyhedron, polyhedron) X(mesh, mesh) X(facets, facets) X(standard, standard)
 
 /* Adds a solid of any kind. */
 static RtStatus solid_kind(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) {

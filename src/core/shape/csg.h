@@ -125,9 +125,9 @@ uint64_t rt_csg_forest_bytes(const RtCsgForest *forest);
 RtStatus rt_csg_compile(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
                         RtCsg *out, RtError *error);
 
-/* The same for a tree of any forest, moved by `move` (NULL: in place). */
-RtStatus rt_csg_copy(RtCsgForest *forest, const RtCsgForest *from, const RtCsg *tree, const RtTransform *move,
-                     RtCsg *out, RtError *error);
+/* Adds the terms of a compiled tree to an empty builder: compiling *root makes the same tree. */
+RtStatus rt_csg_recover(RtCsgBuilder *builder, const RtCsgForest *from, const RtCsg *tree, RtCsgTerm *root,
+                        RtError *error);
 
 /* ---- rays ---- */
 

@@ -345,11 +345,8 @@ RtStatus rt_csg_compile(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgT
     return status;
 }
 
-/* ---- moving trees ---- */
-
-/* Recovers the terms of a compiled tree. */
-static RtStatus recover_terms(RtCsgBuilder *builder, const RtCsgForest *from, const RtCsg *tree,
-                              RtCsgTerm *root, RtError *error) {
+RtStatus rt_csg_recover(RtCsgBuilder *builder, const RtCsgForest *from, const RtCsg *tree, RtCsgTerm *root,
+                        RtError *error) {
     RtCsgTerm terms[RT_CSG_MAX_LISTS];
     uint32_t count = 0, solid;
     for (uint32_t i = 0; i < tree->count; i++) {
@@ -369,17 +366,6 @@ static RtStatus recover_terms(RtCsgBuilder *builder, const RtCsgForest *from, co
     assert(count == 1);
     *root = terms[0];
     return RT_OK;
-}
-
-RtStatus rt_csg_copy(RtCsgForest *forest, const RtCsgForest *from, const RtCsg *tree, const RtTransform *move,
-                     RtCsg *out, RtError *error) {
-    RtCsgBuilder builder = {0};
-    RtCsgTerm root = 0;
-    RtStatus status = recover_terms(&builder, from, tree, &root, error);
-    if (status == RT_OK && move) status = rt_csg_move(&builder, root, move, &root, error);
-    if (status == RT_OK) status = rt_csg_compile(forest, &builder, root, tree->extents, out, error);
-    rt_csg_builder_clear(&builder);
-    return status;
 }
 
 /* ---- forests ---- */

@@ -172,14 +172,6 @@ RtStatus rt_geometry_add_csg(RtGeometry *geometry, const RtCsgBuilder *builder, 
     return append_csg(geometry, &tree, error);
 }
 
-RtStatus rt_geometry_copy_csg(RtGeometry *geometry, const RtGeometry *from, uint32_t index,
-                              const RtTransform *move, RtError *error) {
-    RtCsg tree;
-    RT_TRY(reserve_csg(geometry, error));
-    RT_TRY(rt_csg_copy(&geometry->forest, &from->forest, &from->csgs[index], move, &tree, error));
-    return append_csg(geometry, &tree, error);
-}
-
 /* Makes triangle_normals as long as the array of triangles; new entries are RT_NO_NORMALS. */
 static RtStatus reserve_triangle_normals(RtGeometry *g, uint64_t needed, RtError *error) {
     uint32_t before = g->triangle_normal_capacity;

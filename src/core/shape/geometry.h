@@ -101,9 +101,6 @@ RtStatus rt_geometry_add_triangle(RtGeometry *geometry, const RtVec3 vertices[3]
 /* Adds the tree below `root` as one object, with or without tests of inner nodes. `builder` is not kept. */
 RtStatus rt_geometry_add_csg(RtGeometry *geometry, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
                              RtError *error);
-/* Adds tree `index` of another geometry, moved by `move` (NULL: in place). */
-RtStatus rt_geometry_copy_csg(RtGeometry *geometry, const RtGeometry *from, uint32_t index,
-                              const RtTransform *move, RtError *error);
 
 /* Computes the boxes. Call it once, after the last object. */
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error);

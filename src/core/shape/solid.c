@@ -45,11 +45,7 @@ uint64_t rt_solid_set_bytes(const RtSolidSet *set) {
 /* ---- by kind ---- */
 
 uint32_t rt_solid_most_crossings(const RtSolid *solid) {
-    switch (solid->kind) {
-    case RT_SOLID_TORUS: return 4;
-    case RT_SOLID_MESH: return solid->count;
-    default: return 2;
-    }
+    return solid->kind == RT_SOLID_TORUS ? 4 : solid->kind == RT_SOLID_MESH ? solid->count : 2;
 }
 
 uint32_t rt_solid_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,

@@ -204,7 +204,6 @@ RtStatus rt_json_lines_load(const char *path, json_t **lines, RtError *error) {
     if (status == RT_OK && json_array_size(*lines) > 0) return RT_OK;
     json_decref(*lines);
     *lines = NULL;
-    return status != RT_OK
-               ? status
-               : rt_fail(error, RT_BAD_INPUT, "%s: the journal is empty: start over with --force", path);
+    if (status != RT_OK) return status;
+    return rt_fail(error, RT_BAD_INPUT, "%s: the journal is empty: start over with --force", path);
 }

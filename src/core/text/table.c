@@ -65,15 +65,12 @@ static int figure_place(double size) {
 
 void rt_format_figure(double value, char *out) {
     const double size = fabs(value);
-    if (isnan(value)) {
-        strcpy(out, "-");
-    } else if (value == 0) {
-        strcpy(out, "0");
-    } else if (size < 0.00095 || size >= 1e7) {
+    if (isnan(value) || value == 0)
+        strcpy(out, value == 0 ? "0" : "-");
+    else if (size < 0.00095 || size >= 1e7)
         snprintf(out, 16, "%.1e", value);
-    } else {
+    else
         snprintf(out, 16, "%.*f", -figure_place(size), value);
-    }
 }
 
 /* The power of ten that a number of this size, above 0, is printed in units of. */
@@ -141,17 +138,14 @@ void rt_format_interval(double value, double low, double high, char out[RT_MAX_F
 }
 
 static void show_real(RtForm form, double value, char buffer[RT_MAX_FIELD]) {
-    if (form == RT_FORM_end) {
+    if (form == RT_FORM_end)
         show_end(value, buffer);
-    } else if (forms[form].format) {
+    else if (forms[form].format)
         snprintf(buffer, RT_MAX_FIELD, forms[form].format, value);
-    } else if (form == RT_FORM_amount && value > 0 && value < 0.00095) {
+    else if (form == RT_FORM_amount && value > 0 && value < 0.00095)
         strcpy(buffer, "<0.001");
-    } else if (form == RT_FORM_interval) {
-        rt_format_rough(value, buffer);
-    } else {
-        rt_format_figure(value, buffer);
-    }
+    else
+        (form == RT_FORM_interval ? rt_format_rough : rt_format_figure)(value, buffer);
 }
 
 const char *rt_field_show(RtForm form, const RtField *field, char buffer[RT_MAX_FIELD]) {
