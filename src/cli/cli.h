@@ -291,8 +291,9 @@ typedef struct RtProgress {
 /* Becomes the observer of the measurement with these options. */
 void rt_progress_begin(RtProgress *progress, RtWorkloadOptions *options);
 
-/* Clears the line, if stderr is a terminal. */
+/* Clears the line, if stderr is a terminal; at the end as `progress` has it. */
 void rt_progress_clear(void);
+void rt_progress_end(const RtProgress *progress);
 
 /* Prints a message on a line of its own. `context` is not used. */
 void rt_progress_notice(void *context, const char *message);

@@ -235,7 +235,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     RtStatus status = rt_workloads_run(results, &o->workload, error);
     if (status == RT_OK && o->shared.callgrind)
         rt_notify(&o->workload.observer, "counting instructions under valgrind, which takes a while");
-    rt_progress_clear();
+    rt_progress_end(&progress);
     if (status == RT_OK && o->shared.callgrind)
         status = rt_callgrind_run(callgrind, NULL, results, o->argv + 1, error);
     return status;

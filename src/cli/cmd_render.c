@@ -358,7 +358,6 @@ static json_t *kinds_json(const RtFrame *counted) {
     return kinds;
 }
 
-/* The counts of the accelerators after the first. */
 static json_t *compared_json(const Run *run) {
     json_t *list = json_array();
     for (uint32_t i = 1; i < run->options->accel_count; i++) {

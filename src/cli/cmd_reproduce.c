@@ -43,7 +43,7 @@ static RtStatus count_again(RtResults *results, const RtSelection *only, RtError
     RtProgress progress;
     rt_progress_begin(&progress, &options);
     RtStatus status = rt_workloads_run(results, &options, error);
-    rt_progress_clear();
+    rt_progress_end(&progress);
     return status;
 }
 
@@ -57,7 +57,6 @@ static const char *end_of_line(const char *line) {
     return strchr(line, '\n') ? "" : " (without an end of line)";
 }
 
-/* What was counted again, and what became of it. */
 typedef struct Again {
     const char *directory;
     const RtResults *results;
@@ -67,7 +66,6 @@ typedef struct Again {
     uint64_t compared;   /* lines */
 } Again;
 
-/* Whether the row of a table is of a scene that was not counted again. */
 static bool is_left_out(Again *again, const char *row) {
     const RtExperiment *experiment = again->results->experiment;
     const char end = *row == '"' ? '"' : ',';

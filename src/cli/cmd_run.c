@@ -155,7 +155,7 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     go_on(o, results->experiment, command);
     rt_stop_continue(how->directory, command);
     RtStatus status = rt_run_experiment(results, how, error);
-    rt_progress_clear();
+    rt_progress_end(&progress);
     if (status != RT_OK) return status;
     rt_print_summary(results, stdout);
     if (!how->workload.only.part_count && !how->workload.only.shards)

@@ -131,7 +131,6 @@ static RtStatus add_default(Options *o, RtError *error) {
     return add_families(o, error);
 }
 
-/* The default scenes that have no other shapes. */
 static RtStatus add_triangles(Options *o, RtError *error) {
     uint32_t kept = o->work.scene_count;
     RT_TRY(add_default(o, error));
@@ -167,7 +166,6 @@ static RtStatus sort_scenes(Options *o, RtError *error) {
     return RT_OK;
 }
 
-/* Those given; without any the default, by number of objects. */
 static RtStatus choose_scenes(Options *o, RtError *error) {
     for (uint32_t i = 0; i < o->given_count; i++) {
         const char *given = o->given[i];

@@ -110,3 +110,7 @@ void rt_progress_begin(RtProgress *progress, RtWorkloadOptions *options) {
                              .every = LINE_EVERY};
     options->observer = (RtRunObserver){progress, on_event, rt_progress_notice};
 }
+
+void rt_progress_end(const RtProgress *progress) {
+    if (progress->terminal) fputs("\r\033[K", stderr);
+}

@@ -45,7 +45,7 @@ static char *said(const Place *place, RtEventKind what, bool terminal, double ev
         RtEvent event = {.what = what, .candidate = 1};
         assert_int_equal(observer.event(observer.context, &results, &event, NULL), RT_OK);
     }
-    rt_progress_clear();
+    rt_progress_end(&progress);
     dup2(stderr_was, STDERR_FILENO);
     close(stderr_was);
     close(file);
