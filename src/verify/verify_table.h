@@ -32,8 +32,8 @@ typedef struct RtVerifySum {
     uint64_t faults[RT_FAULT_COUNT];
 } RtVerifySum;
 
-/* Sums rows by accelerator or `by_scene` to (*sums)[0..count), in the order of their first rows. rt_free, also
- * after an error. */
+/* Sums rows by accelerator, or `by_scene`, to (*sums)[0..count), in the order of their first rows. Free with
+ * rt_free, also after an error. */
 RtStatus rt_verify_sums(const json_t *rows, bool by_scene, RtVerifySum **sums, uint32_t *count,
                         RtError *error);
 
