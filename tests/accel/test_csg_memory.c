@@ -165,8 +165,8 @@ static RtStatus stack_of_overlays(const Row *row, RtError *error) {
 
 /* Of answers that are not brute's, by the referee: the one is right, the other wrong. */
 static RtStatus judge(const Row *row, RtError *error) {
-    const RtJudge by = rt_judge(&row->scene.geometry, ray, false);
     const RtRay *ray = &row->rays[0];
+    const RtJudge by = rt_judge(&row->scene.geometry, ray, false);
     const RtHit hit = {49, 0};
     RtVerdict verdict;
     RtSide side;
