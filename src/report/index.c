@@ -183,8 +183,7 @@ static void add_entry(Index *index, const char *directory) {
 
 static void visit(void *context, const char *path) {
     Index *index = context;
-    const bool hidden = basename(path)[0] == '.'; /* ., .. and hidden folders */
-    if (hidden || index->status != RT_OK) return;
+    if (basename(path)[0] == '.' || index->status != RT_OK) return; /* ., .. and hidden folders */
     if (is_entry(path)) {
         add_entry(index, path);
     } else if (!index->inner) {
