@@ -81,7 +81,7 @@ fault nonsense 'returned 42'
 fault validate 'node 3 is its own parent' ''
 fault boxes 'expected .* got ' "$differs"
 fault moody 'counts [0-9]+ extent_tests on some [a-z]+ rays, and [0-9]+ when' \
-    'counts [0-9]+ extent_tests on some rays, and [0-9]+ when they are traced again'
+    'counts [0-9]+ extent_tests on some [a-z]+ rays, and [0-9]+ when they are traced again'
 fault lazy 'expected .* got ' "$differs.* in the timed kernel"
 fault uncounted 'its object_tests for [a-z]+ rays add up to 0, and were [0-9]+'
 fault twice 'its object_tests for [a-z]+ rays add up to [0-9]+, and were [0-9]+'
@@ -121,7 +121,7 @@ fault own-endless 't = inf, which is not on the ray'
 fault own-early 't = 0, which is not on the ray'
 fault own-occluder 'an object that does not exist, 11 \(the scene has 11 objects\)'
 fault own-moody 'counts [0-9]+ extent_tests on some [a-z]+ rays, and [0-9]+ when' \
-    'counts [0-9]+ extent_tests on some rays, and [0-9]+ when they are traced again'
+    'counts [0-9]+ extent_tests on some [a-z]+ rays, and [0-9]+ when they are traced again'
 fault own-unprepared "$crash\) .*; its stream begins with the ray org"
 fault own-farther ''
 fault own-uncounted ''

@@ -72,10 +72,6 @@ static inline void assert_gives(const RtReference *reference, const char *spec) 
     }
 }
 
-static inline void assert_answers_like_brute(const FamilyBench *bench, const char *spec) {
-    assert_gives(&bench->reference, spec);
-}
-
 /* Checks one spec; tells what is wrong and returns false if anything is. What is refused with this phrase,
  * unless it is NULL, conforms. */
 static inline bool conforms(const FamilyBench *bench, const char *spec, const char *may_refuse) {

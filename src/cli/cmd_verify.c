@@ -379,7 +379,7 @@ static RtStatus print_totals(const Options *o, const json_t *rows, RtError *erro
     const uint64_t rays = o->work.rays.count;
     RtVerifySum *sums;
     uint32_t count;
-    RtStatus status = rt_verify_sums(rows, RT_BY_ACCEL, &sums, &count, error);
+    RtStatus status = rt_verify_sums(rows, false, &sums, &count, error);
     for (uint32_t i = 0; i < count; i++) print_judged(&sums[i]);
     if (status == RT_OK) print_total(o, rows, sums, count);
     rt_free(sums);

@@ -146,12 +146,6 @@ static RtStatus compare_cell(const Pair *pair, const RtCellCursor *at, RtCompari
     return take_times(comparison, cell, pair->number, one, other, error);
 }
 
-static RtStatus compare_all(const Pair *pair, RtComparison *comparison, RtError *error) {
-    for (RtCellCursor at = {0}; rt_results_next(pair->before, &at);)
-        RT_TRY(compare_cell(pair, &at, comparison, error));
-    return RT_OK;
-}
-
 /* ---- intervals of cells, over the rounds of these processes ---- */
 
 /* All times of a cell on one side. */
@@ -283,9 +277,11 @@ RtStatus rt_compare_results(const RtResults *results, uint32_t pairs, RtComparis
     comparison->pairs = pairs;
     for (uint32_t p = 0; p < pairs; p++) {
         const RtResults *before = &results[(size_t)2 * p], *after = before + 1;
-        const Pair straight = {before, after, p, false}, swapped = {after, before, p, true};
-        RT_TRY(compare_all(&straight, comparison, error));
-        RT_TRY(compare_all(&swapped, comparison, error));
+        const Pair both[] = {{before, after, p, false}, {after, before, p, true}};
+        for (int k = 0; k < 2; k++) {
+            for (RtCellCursor at = {0}; rt_results_next(both[k].before, &at);)
+                RT_TRY(compare_cell(&both[k], &at, comparison, error));
+        }
     }
     uint32_t shared = 0;
     for (uint32_t i = 0; i < comparison->count; i++) {

@@ -63,15 +63,14 @@ static RtStatus compare_pass(const RtAccel *accel, const RtRaySet *set, const Rt
     return status;
 }
 
-/* Whether two passes over the same rays counted the same. */
-static RtStatus check_counts(const RtAccel *accel, const RtTally *first, const RtTally *second,
-                             RtError *error) {
+RtStatus rt_counts_check(const RtAccel *accel, const RtTally *first, const RtTally *second, RtRayKind kind,
+                         RtError *error) {
     const size_t i = rt_tally_difference(first, second);
     if (i == RT_TALLY_COUNTER_COUNT) return RT_OK;
     return rt_fail(error, RT_BROKEN,
-                   "%s: it counts %llu %s on some rays, and %llu when they are traced again",
+                   "%s: it counts %llu %s on some %s rays, and %llu when they are traced again",
                    accel->ops->name, (unsigned long long)rt_tally_get(first, i), rt_tally_name(i),
-                   (unsigned long long)rt_tally_get(second, i));
+                   rt_ray_kind_name(kind), (unsigned long long)rt_tally_get(second, i));
 }
 
 RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
@@ -80,7 +79,7 @@ RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit
     RT_TRY(compare_pass(accel, set, expected, threads, true, count, error));
     if (!rt_accel_is_remote(accel) || (accel->exact && count->differ > 0)) return RT_OK;
     RT_TRY(compare_pass(accel, set, expected, threads, true, &other, error));
-    RT_TRY(check_counts(accel, &count->tally, &other.tally, error));
+    RT_TRY(rt_counts_check(accel, &count->tally, &other.tally, set->kind, error));
     RT_TRY(compare_pass(accel, set, expected, threads, false, &other, error));
     if (other.differ <= count->differ) return RT_OK;
     count->differ = other.differ;

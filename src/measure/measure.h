@@ -30,6 +30,10 @@ typedef struct RtCount {
 RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
                           RtCount *count, RtError *error);
 
+/* RT_BROKEN unless two counts of the same rays of a kind are equal. */
+RtStatus rt_counts_check(const RtAccel *accel, const RtTally *first, const RtTally *second, RtRayKind kind,
+                         RtError *error);
+
 /* What each ray of a set hit and cost, row by row. */
 typedef struct RtRows {
     uint64_t count;

@@ -34,17 +34,12 @@ static json_t *counters_json(void) {
     return list;
 }
 
-static json_t *kinds_json(void) {
-    json_t *list = json_array();
-    for (int i = 0; i < RT_RAY_KIND_COUNT; i++)
-        json_array_append_new(list, json_string(rt_ray_kind_name((RtRayKind)i)));
-    return list;
-}
+#define NAME(CONSTANT, name, ...) #name,
+static const char *const kinds[] = {RT_RAY_KINDS(NAME)}, *const shapes[] = {RT_SHAPES(NAME)};
 
-static json_t *shapes_json(void) {
+static json_t *names_json(const char *const *names, size_t count) {
     json_t *list = json_array();
-    for (int i = 0; i < RT_SHAPE_COUNT; i++)
-        json_array_append_new(list, json_string(rt_shape_name((RtShape)i)));
+    for (size_t i = 0; i < count; i++) json_array_append_new(list, json_string(names[i]));
     return list;
 }
 
@@ -69,7 +64,7 @@ static json_t *scene_json(const RtScene *scene, const char *name, uint32_t every
                      vector_json(scene->geometry.box.lo), "hi", vector_json(scene->geometry.box.hi),
                      "materials", materials, "lights", lights, "from", vector_json(camera->from), "at",
                      vector_json(camera->at), "up", vector_json(camera->up), "fov", (double)camera->fov,
-                     "shapes", shapes_json());
+                     "shapes", names_json(shapes, RT_SHAPE_COUNT));
 }
 
 static json_t *accelerator_json(const RtRecordedPaths *paths, const RtExploredSpec *spec,
@@ -92,8 +87,8 @@ static json_t *page_json(const RtScene *scene, const RtRecordedPixels *recording
                      (int)recording->columns, "rows", (int)recording->rows, "rays",
                      (json_int_t)recording->ray_count, "cut", (json_int_t)recording->cut_count, "cell_map",
                      RT_CELL_MAP, "most_rows", RT_MAX_RECORDED_ROWS, "depth", (int)depth, "counters",
-                     counters_json(), "kinds", kinds_json(), "scale", scale_json(), "scene", scene_data,
-                     "accelerators", accelerators);
+                     counters_json(), "kinds", names_json(kinds, RT_RAY_KIND_COUNT), "scale", scale_json(),
+                     "scene", scene_data, "accelerators", accelerators);
 }
 
 /* ---- the parts ---- */

@@ -183,8 +183,7 @@ static void add_entry(Index *index, const char *directory) {
 
 static void visit(void *context, const char *path) {
     Index *index = context;
-    const bool hidden = basename(path)[0] == '.'; /* ., .. and hidden folders */
-    if (hidden || index->status != RT_OK) return;
+    if (basename(path)[0] == '.' || index->status != RT_OK) return; /* ., .. and hidden folders */
     if (is_entry(path)) {
         add_entry(index, path);
     } else if (!index->inner) {
@@ -326,18 +325,18 @@ RtStatus rt_index_write(const char *folder, size_t *count, RtError *error) {
     /* Without trailing slashes, for paths relative to it. */
     snprintf(plain, sizeof plain, "%s", *folder ? folder : ".");
     for (size_t size = strlen(plain); size > 1 && plain[size - 1] == '/'; size--) plain[size - 1] = '\0';
+    RT_ARENA(arena);
     Index index = {.folder = plain,
-                   .experiment = rt_alloc(1, sizeof(RtExperiment)),
+                   .experiment = rt_arena_alloc(&arena, 1, sizeof(RtExperiment)),
                    .papers = json_array(),
                    .verdicts = json_object(),
                    .error = error};
-    if (!index.experiment) return rt_fail_memory(error, "an experiment", sizeof(RtExperiment));
+    RT_TRY(rt_arena_check(&arena, "an experiment", error));
     rt_directory_each(plain, "", visit, &index);
     if (index.status == RT_OK) index.status = write_pages(&index, error);
     json_decref(index.papers);
     json_decref(index.verdicts);
     rt_free(index.entries);
-    rt_free(index.experiment);
     *count = index.count;
     return index.status;
 }

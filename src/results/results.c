@@ -311,23 +311,21 @@ static double rays_from(double more, double saved) {
     return more <= 0 ? 0 : saved <= 0 ? INFINITY : more / saved;
 }
 
-/* Rays that lose as much time as the build takes less. */
-static double rays_up_to(double more, double saved) {
-    return more >= 0 ? 0 : saved >= 0 ? INFINITY : more / saved;
+static RtEstimate negated(RtEstimate e) {
+    return (RtEstimate){-e.median, -e.high, -e.low, (double)NAN};
 }
 
-/* `more`: seconds that the build takes more than the baseline's; `saved`: seconds that a ray takes less. */
-static void set_rays(RtBreakEven *even, const RtEstimate *more, const RtEstimate *saved) {
-    even->up_to = saved->high < 0 || (saved->low <= 0 && more->median < 0);
+/* `more`: seconds that the build takes more than the baseline's; `saved`: seconds that a ray takes less. Up
+ * to so many rays lose as much time as the build takes less. */
+static void set_rays(RtBreakEven *even, RtEstimate more, RtEstimate saved) {
+    even->up_to = saved.high < 0 || (saved.low <= 0 && more.median < 0);
     if (even->up_to) {
-        even->rays.median = rays_up_to(more->median, saved->median);
-        even->rays.low = rays_up_to(more->high, saved->low);
-        even->rays.high = rays_up_to(more->low, saved->high);
-    } else {
-        even->rays.median = rays_from(more->median, saved->median);
-        even->rays.low = rays_from(more->low, saved->high);
-        even->rays.high = rays_from(more->high, saved->low);
+        more = negated(more);
+        saved = negated(saved);
     }
+    even->rays.median = rays_from(more.median, saved.median);
+    even->rays.low = rays_from(more.low, saved.high);
+    even->rays.high = rays_from(more.high, saved.low);
 }
 
 RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate) {
@@ -344,7 +342,7 @@ RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, u
     }
     const RtEstimate *a = &own->seconds, *b = &baseline->seconds,
                      more = {a->median - b->median, a->low - b->high, a->high - b->low, unknown};
-    set_rays(&even, &more, &saved);
+    set_rays(&even, more, saved);
     even.builds = own->builds < baseline->builds ? own->builds : baseline->builds;
     return even;
 }

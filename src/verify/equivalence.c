@@ -4,6 +4,7 @@
 #include "accel/plugin.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
+#include "measure/measure.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -53,9 +54,7 @@ typedef struct Job {
     const RtReference *reference;
     const RtAccel *accel;
     int threads;
-    size_t chunks;
     Worker *workers;      /* [threads] */
-    RtHit *hits;          /* the reference's answers, when computing them */
     RtEquivalence *parts; /* [chunks] parts of the result, when checking */
     RtError recounted;    /* RT_BROKEN if chunk 0 was counted differently twice */
 } Job;
@@ -76,14 +75,14 @@ static void choose_modes(Worker *worker, size_t chunk) {
 
 static RtStatus run(Job *job, RtWork work, RtError *error) {
     job->threads = rt_thread_count(job->threads);
-    job->chunks = (job->reference->count + CHUNK - 1) / CHUNK;
+    const size_t chunks = (job->reference->count + CHUNK - 1) / CHUNK;
     RT_ARENA(memory);
     job->workers = rt_arena_alloc(&memory, (size_t)job->threads, sizeof(Worker));
     RtStatus status = rt_arena_check(&memory, "answers", error);
     for (int i = 0; i < job->threads && status == RT_OK; i++) {
         status = rt_query_init(&job->workers[i].query, job->accel, error);
     }
-    if (status == RT_OK) status = rt_parallel_for(job->chunks, job->threads, work, job, error);
+    if (status == RT_OK) status = rt_parallel_for(chunks, job->threads, work, job, error);
     if (status == RT_OK) status = rt_accel_check(job->accel, error);
     for (int i = 0; job->workers && i < job->threads; i++) rt_query_clear(&job->workers[i].query);
     return status;
@@ -100,7 +99,7 @@ static RtStatus refer_chunk(void *context, size_t chunk, int thread, RtError *er
     (void)error;
     Job *job = context;
     rt_nearest(&job->workers[thread].query, job->reference->rays + chunk * CHUNK, chunk_count(job, chunk),
-               job->hits + chunk * CHUNK, NULL);
+               job->reference->hits + chunk * CHUNK, NULL);
     return RT_OK;
 }
 
@@ -109,7 +108,7 @@ RtStatus rt_reference_init(RtReference *reference, const RtAccel *oracle, const 
     *reference = (RtReference){
         .scene = oracle->scene, .rays = rays, .count = count, .hits = rt_alloc(count, sizeof(RtHit))};
     if (!reference->hits) return rt_fail_memory(error, "reference answers", count * sizeof(RtHit));
-    Job job = {.reference = reference, .accel = oracle, .threads = threads, .hits = reference->hits};
+    Job job = {.reference = reference, .accel = oracle, .threads = threads};
     RtStatus status = run(&job, refer_chunk, error);
     if (status != RT_OK) rt_reference_clear(reference);
     return status;
@@ -315,19 +314,6 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
     return RT_OK;
 }
 
-static void compare_recounts(Job *job, const Answers *answers) {
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
-        const RtTally *first = &answers->recounts[0][kind], *second = &answers->recounts[1][kind];
-        const size_t i = rt_tally_difference(first, second);
-        if (i == RT_TALLY_COUNTER_COUNT) continue;
-        rt_fail(&job->recounted, RT_BROKEN,
-                "it counts %llu %s on some %s rays, and %llu when they are traced again",
-                (unsigned long long)rt_tally_get(first, i), rt_tally_name(i),
-                rt_ray_kind_name((RtRayKind)kind), (unsigned long long)rt_tally_get(second, i));
-        return;
-    }
-}
-
 /* The plugin's process has checked its hits, but may have overwritten them since. */
 static bool hits_are_possible(const RtAccel *accel, const Plan *plan, const RtRay *rays,
                               const Answers *answers) {
@@ -355,7 +341,9 @@ static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *er
         rt_remote_break(job->accel, "it overwrote its answers", "it was traced");
         return RT_OK;
     }
-    if (worker->plan.recount) compare_recounts(job, answers);
+    for (int k = 0; k < RT_RAY_KIND_COUNT && worker->plan.recount && job->recounted.status == RT_OK; k++)
+        rt_counts_check(job->accel, &answers->recounts[0][k], &answers->recounts[1][k], (RtRayKind)k,
+                        &job->recounted);
     for (size_t i = 0; i < worker->plan.count; i++) RT_TRY(judge(job, worker, chunk, i, error));
     return RT_OK;
 }
@@ -379,7 +367,7 @@ RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int 
         if (job.parts[i].any_wrong) keep_wrong_answer(out, &job.parts[i].first_wrong);
     }
     if (out->any_wrong || job.recounted.status == RT_OK) return RT_OK;
-    return rt_fail(error, RT_BROKEN, "%s: %s", accel->ops->name, job.recounted.message);
+    return rt_fail(error, RT_BROKEN, "%s", job.recounted.message);
 }
 
 /* ---- results as text ---- */

@@ -100,7 +100,8 @@ RtStatus rt_failure_of(const RtReference *reference, const RtWrongAnswer *wrong,
 typedef struct Shrinking {
     const RtScene *scene;
     const RtFailure *failure;
-    const RtShrinkObserver *observer;
+    RtShrinkTried *tried;
+    void *context;
     uint64_t left;  /* remaining budget */
     uint32_t *part; /* [object_count] the objects of the current try */
     RtShrunk *out;
@@ -126,7 +127,7 @@ static RtStatus try_part(Shrinking *s, uint32_t count, bool *shrunk) {
         s->out->answer = answer;
         *shrunk = true;
     }
-    if (s->observer) s->observer->tried(s->observer->context, s->out->count, s->out->tries);
+    if (s->tried) s->tried(s->context, s->out->count, s->out->tries);
     return RT_OK;
 }
 
@@ -188,13 +189,14 @@ static RtStatus shrink(Shrinking *s, const RtAnswer *answer) {
 }
 
 RtStatus rt_shrink(const RtScene *scene, const RtFailure *failure, const RtAnswer *answer, uint64_t budget,
-                   const RtShrinkObserver *observer, RtShrunk *out, RtError *error) {
+                   RtShrinkTried *tried, void *context, RtShrunk *out, RtError *error) {
     RT_ARENA(memory);
     uint32_t count = scene->geometry.object_count;
     *out = (RtShrunk){.ids = rt_alloc(count, sizeof(uint32_t)), .count = count, .answer = *answer};
     Shrinking s = {.scene = scene,
                    .failure = failure,
-                   .observer = observer,
+                   .tried = tried,
+                   .context = context,
                    .left = budget,
                    .part = rt_arena_alloc(&memory, count, sizeof(uint32_t)),
                    .out = out,

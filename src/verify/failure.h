@@ -43,11 +43,7 @@ RtStatus rt_failure_of(const RtReference *reference, const RtWrongAnswer *wrong,
 
 /* ---- shrinking ---- */
 
-/* Called after each try with the numbers of remaining objects and of tries. */
-typedef struct RtShrinkObserver {
-    void (*tried)(void *context, uint32_t left, uint32_t tries);
-    void *context;
-} RtShrinkObserver;
+typedef void RtShrinkTried(void *context, uint32_t left, uint32_t tries);
 
 /* The budget counts objects built over, so that the result does not depend on a clock; it lasts some
  * seconds. */
@@ -60,10 +56,11 @@ typedef struct RtShrunk {
     RtAnswer answer; /* over the remaining objects; its ids are positions in `ids` */
 } RtShrunk;
 
-/* Shrinks `scene` for a failure with `answer`. `observer` may be NULL. If the accelerator cannot be built
- * over a part, its answer there counts as right. */
+/* Shrinks `scene` for a failure with `answer`. After each try, tried(context, remaining objects, tries) is
+ * called unless it is NULL. If the accelerator cannot be built over a part, its answer there counts as right.
+ */
 RtStatus rt_shrink(const RtScene *scene, const RtFailure *failure, const RtAnswer *answer, uint64_t budget,
-                   const RtShrinkObserver *observer, RtShrunk *out, RtError *error);
+                   RtShrinkTried *tried, void *context, RtShrunk *out, RtError *error);
 
 /* ---- replay files ---- */
 

@@ -188,7 +188,6 @@ static uint64_t shrink_budget(const Run *run, const char *spec) {
  * cannot be written. */
 static RtStatus keep_failure(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec,
                              const RtWrongAnswer *wrong, json_t *row, RtError *error) {
-    RtShrinkObserver observer = {on_tried, run};
     RtFailure failure;
     RtAnswer answer;
     RtShrunk shrunk = {.count = scene->scene.geometry.object_count};
@@ -198,7 +197,7 @@ static RtStatus keep_failure(Run *run, const RtVerifyScene *scene, const RtVerif
                          error));
     RtReplayRecord record = {scene->name, &scene->scene, &failure, &answer, NULL};
     if (answer.wrong && budget > 0) {
-        RT_TRY(rt_shrink(&scene->scene, &failure, &answer, budget, &observer, &shrunk, error));
+        RT_TRY(rt_shrink(&scene->scene, &failure, &answer, budget, on_tried, run, &shrunk, error));
         record.shrunk = &shrunk;
     }
     const bool saved = save_replay(run, &record, path, &run->unsaved) == RT_OK;

@@ -518,18 +518,7 @@ static RtStatus sample(const RtVerifyRays *wanted, RtScene *scene, RtError *erro
     return rt_scene_sample(scene, (uint32_t)width, (uint32_t)height, 1, false, error);
 }
 
-/* Appends at most `limit` rays of `set`, evenly spread. */
-static RtStatus append(RtRay *rays, uint64_t *count, const RtRaySet *set, uint64_t limit, RtError *error) {
-    RtRaySet thin;
-    if (limit == 0) return RT_OK;
-    RT_TRY(rt_rayset_limit(set, limit, 1, &thin, error));
-    memcpy(rays + *count, thin.rays, thin.count * sizeof(RtRay));
-    *count += thin.count;
-    rt_rayset_clear(&thin);
-    return RT_OK;
-}
-
-/* Appends an equal share of each kind of ray in the camera's frame. */
+/* Appends an equal share of each kind of ray in the camera's frame, evenly spread over it. */
 static RtStatus append_camera_rays(const RtVerifyRays *wanted, const RtAccel *oracle, RtRay *rays,
                                    uint64_t *count, RtError *error) {
     RtRecording recording = {.depth = FRAME_DEPTH, .seed = wanted->seed, .threads = wanted->threads};
@@ -539,8 +528,14 @@ static RtStatus append_camera_rays(const RtVerifyRays *wanted, const RtAccel *or
     for (int kind = 0; kind < RT_RAY_RANDOM; kind++) kinds += sets[kind].count > 0;
     RtStatus status = RT_OK;
     for (int kind = 0; kind < RT_RAY_RANDOM && status == RT_OK; kind++) {
-        if (sets[kind].count > 0)
-            status = append(rays, count, &sets[kind], wanted->count / CAMERA_PART / kinds, error);
+        RtRaySet thin;
+        const uint64_t limit = sets[kind].count > 0 ? wanted->count / CAMERA_PART / kinds : 0;
+        if (limit == 0) continue;
+        status = rt_rayset_limit(&sets[kind], limit, 1, &thin, error);
+        if (status != RT_OK) break;
+        memcpy(rays + *count, thin.rays, thin.count * sizeof(RtRay));
+        *count += thin.count;
+        rt_rayset_clear(&thin);
     }
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
     return status;

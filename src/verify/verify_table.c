@@ -58,18 +58,18 @@ static void add(RtVerifySum *sum, const json_t *row) {
     for (int f = 0; f < RT_FAULT_COUNT; f++) sum->faults[f] += number(faults, rt_fault_name((RtFault)f));
 }
 
-RtStatus rt_verify_sums(const json_t *rows, RtVerifyGroup group, RtVerifySum **sums, uint32_t *count,
+RtStatus rt_verify_sums(const json_t *rows, bool by_scene, RtVerifySum **sums, uint32_t *count,
                         RtError *error) {
     uint32_t capacity = 0;
     *sums = NULL;
     *count = 0;
     for (size_t i = 0; i < json_array_size(rows); i++) {
         const json_t *row = json_array_get(rows, i);
-        const char *spec = json_string_value(json_object_get(row, "accel"));
-        const char *scene = json_string_value(json_object_get(row, "scene"));
-        RtVerifySum key = {.exact = group == RT_BY_SCENE || json_is_true(json_object_get(row, "exact"))};
-        if (group == RT_BY_ACCEL) put_accel(key.name, spec);
-        if (group == RT_BY_SCENE) snprintf(key.name, sizeof key.name, "%s", scene);
+        RtVerifySum key = {.exact = by_scene || json_is_true(json_object_get(row, "exact"))};
+        if (by_scene)
+            snprintf(key.name, sizeof key.name, "%s", rt_json_text(row, "scene", ""));
+        else
+            put_accel(key.name, rt_json_text(row, "accel", ""));
         RtVerifySum *sum = sum_of(*sums, *count, &key);
         if (!sum) {
             RT_TRY(rt_append(sums, count, &capacity, &key, sizeof key, error));
@@ -312,8 +312,8 @@ static RtStatus write_files(json_t *rows, const Sums *sums, const char *folder, 
 
 RtStatus rt_verify_write(json_t *rows, const char *folder, RtError *error) {
     Sums sums = {0};
-    RtStatus status = rt_verify_sums(rows, RT_BY_ACCEL, &sums.accels, &sums.accel_count, error);
-    if (status == RT_OK) status = rt_verify_sums(rows, RT_BY_SCENE, &sums.scenes, &sums.scene_count, error);
+    RtStatus status = rt_verify_sums(rows, false, &sums.accels, &sums.accel_count, error);
+    if (status == RT_OK) status = rt_verify_sums(rows, true, &sums.scenes, &sums.scene_count, error);
     if (status == RT_OK) status = write_files(rows, &sums, folder, error);
     rt_free(sums.accels);
     rt_free(sums.scenes);

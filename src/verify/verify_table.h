@@ -32,11 +32,9 @@ typedef struct RtVerifySum {
     uint64_t faults[RT_FAULT_COUNT];
 } RtVerifySum;
 
-typedef enum RtVerifyGroup { RT_BY_ACCEL, RT_BY_SCENE } RtVerifyGroup;
-
-/* Sums an array of rows to (*sums)[0..count), in the order of their first rows. Free with rt_free, also
- * after an error. */
-RtStatus rt_verify_sums(const json_t *rows, RtVerifyGroup group, RtVerifySum **sums, uint32_t *count,
+/* Sums rows by accelerator, or `by_scene`, to (*sums)[0..count), in the order of their first rows. Free with
+ * rt_free, also after an error. */
+RtStatus rt_verify_sums(const json_t *rows, bool by_scene, RtVerifySum **sums, uint32_t *count,
                         RtError *error);
 
 /* The sum of all rows; exact if every accelerator is. */

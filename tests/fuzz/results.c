@@ -140,7 +140,7 @@ static void use_results(void) {
     rt_print_distributions(&results, out);
     rt_null_sentence(&results, sentence);
     fuzz_accepted(rt_claims_check(&results, &error), &error);
-    rt_page_claims(out, &results);
+    json_decref(rt_page_claims(&results));
     const RtResults both[2] = {results, results};
     CHECK(rt_compare_results(both, 1, &comparison, &error) == RT_OK);
     rt_comparison_print(&comparison, out);

@@ -181,7 +181,12 @@ RT_TEST(unpaired_intervals_hold_the_true_ratio_as_often_as_they_say) {
 }
 
 /* 2 / C(12, 6) is 0.22 %; 168 cells take 1 - 0.05 / 168. */
-RT_TEST(so_many_unpaired_rounds_cover_at_most_so_much) {
+RT_TEST(so_many_cells_ask_for_so_many_rounds_and_unpaired_ones_cover_at_most_so_much) {
+    assert_true(rt_coverage_of_each(0) == 0.95 && rt_coverage_of_each(1) == 0.95);
+    assert_true(fabs(rt_coverage_of_each(10) - 0.995) < 1e-12);
+    assert_int_equal(rt_rounds_for(0.95), 9);
+    assert_int_equal(rt_rounds_for(rt_coverage_of_each(10)), 13);
+    assert_int_equal(rt_rounds_for(rt_coverage_of_each(100)), 17);
     assert_true(fabs(rt_unpaired_coverage(6, 6) - (1 - 2 / 924.0)) < 1e-12);
     assert_true(fabs(rt_unpaired_coverage(2, 3) - 0.8) < 1e-12);
     assert_true(rt_unpaired_coverage(1, 1) == 0);
@@ -215,14 +220,6 @@ RT_TEST(intervals_of_means_are_as_wide_as_the_tables_of_student_say) {
             fail_msg("%u: %g %g in place of %g", n, above, below, half);
         assert_true(e.least == ratios[0]);
     }
-}
-
-RT_TEST(as_many_rounds_are_taken_as_so_many_cells_ask_for) {
-    assert_true(rt_coverage_of_each(0) == 0.95 && rt_coverage_of_each(1) == 0.95);
-    assert_true(fabs(rt_coverage_of_each(10) - 0.995) < 1e-12);
-    assert_int_equal(rt_rounds_for(0.95), 9);
-    assert_int_equal(rt_rounds_for(rt_coverage_of_each(10)), 13);
-    assert_int_equal(rt_rounds_for(rt_coverage_of_each(100)), 17);
 }
 
 RT_TESTS(statistics, NULL, NULL)

@@ -10,8 +10,7 @@
 /* Choices with slabs of every number. */
 enum { BOX, SPHERE, OBB, SLABS_3, SLABS_13 = 13, CHOICES, LINES = 100000 };
 
-/* Counts for the objects of one shape, or for all of several, of `geometry`, which is finished here and
- * cleared. */
+/* Counts for one shape, or all of several, of `geometry`, which is finished here and cleared. */
 static void count(RtGeometry *geometry, RtShape shape, RtTightness *out) {
     RtExtentsTable table;
     size_t i = 0;

@@ -37,7 +37,7 @@ static void shrink(const FamilyBench *bench, const char *spec, const RtWrongAnsw
     assert_ok(rt_failure_of(&bench->reference, wrong, spec, 0, &failure, &answer, error));
     assert_true(answer.wrong);
     assert_int_equal(failure.count, 1);
-    assert_ok(rt_shrink(&bench->scene, &failure, &answer, RT_SHRINK_BUDGET, NULL, &shrunk, error));
+    assert_ok(rt_shrink(&bench->scene, &failure, &answer, RT_SHRINK_BUDGET, NULL, NULL, &shrunk, error));
     rt_wrong_answer_format(wrong, says, sizeof says);
     print_message("%s: scene %s with %u objects, rays %s, %u objects left after %u tries: %s\n", spec,
                   bench->scene.name, bench->scene.geometry.object_count,
@@ -91,7 +91,7 @@ static void shrinking_ends_with_its_budget(void **state) {
     assert_true(answer.wrong);
     for (uint64_t budget = 0; budget <= 2000; budget += 400) {
         RtShrunk shrunk;
-        assert_ok(rt_shrink(&bench.scene, &failure, &answer, budget, NULL, &shrunk, error));
+        assert_ok(rt_shrink(&bench.scene, &failure, &answer, budget, NULL, NULL, &shrunk, error));
         assert_false(shrunk.minimal);
         assert_true(shrunk.answer.wrong && shrunk.tries <= budget / 32);
         if (budget == 0) assert_int_equal(shrunk.count, bench.scene.geometry.object_count);

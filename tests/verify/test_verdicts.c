@@ -57,22 +57,18 @@ static RtVerdict verdict_by_margins(const RtGeometry *g, const RtRay *ray, RtHit
 
 /* ---- careful float32 triangle tests ---- */
 
-typedef struct Arithmetic {
-    bool fused;
-} Arithmetic;
-
-static float sum_of_products(Arithmetic a, float x, float y, float z, float w) {
-    return a.fused ? fmaf(x, y, z * w) : x * y + z * w;
+static float sum_of_products(bool fused, float x, float y, float z, float w) {
+    return fused ? fmaf(x, y, z * w) : x * y + z * w;
 }
 
-static float dot(Arithmetic a, RtVec3 x, RtVec3 y) {
-    float two = sum_of_products(a, x.x, y.x, x.y, y.y);
-    return a.fused ? fmaf(x.z, y.z, two) : two + x.z * y.z;
+static float dot(bool fused, RtVec3 x, RtVec3 y) {
+    float two = sum_of_products(fused, x.x, y.x, x.y, y.y);
+    return fused ? fmaf(x.z, y.z, two) : two + x.z * y.z;
 }
 
-static RtVec3 cross(Arithmetic a, RtVec3 x, RtVec3 y) {
-    return rt_vec3(sum_of_products(a, x.y, y.z, -x.z, y.y), sum_of_products(a, x.z, y.x, -x.x, y.z),
-                   sum_of_products(a, x.x, y.y, -x.y, y.x));
+static RtVec3 cross(bool fused, RtVec3 x, RtVec3 y) {
+    return rt_vec3(sum_of_products(fused, x.y, y.z, -x.z, y.y), sum_of_products(fused, x.z, y.x, -x.x, y.z),
+                   sum_of_products(fused, x.x, y.y, -x.y, y.x));
 }
 
 /* Is the plane seen so nearly edge on that float32 cannot tell where it is met? A careful test then rejects.
@@ -87,65 +83,65 @@ static bool is_edge_on(const RtVec3 from[3], RtVec3 dir, float determinant) {
     return !(fabsf(determinant) > 0x1p-19f * far * side * sqrtf(rt_dot(dir, dir)));
 }
 
-typedef bool TriangleTest(Arithmetic a, const RtVec3 from[3], RtVec3 dir, float *t);
+typedef bool TriangleTest(bool fused, const RtVec3 from[3], RtVec3 dir, float *t);
 
 /* Möller & Trumbore 1997. */
-static bool moeller_trumbore(Arithmetic a, const RtVec3 from[3], RtVec3 dir, float *t) {
+static bool moeller_trumbore(bool fused, const RtVec3 from[3], RtVec3 dir, float *t) {
     RtVec3 one = rt_sub(from[1], from[0]), two = rt_sub(from[2], from[0]), org = rt_scale(from[0], -1);
-    RtVec3 p = cross(a, dir, two), q = cross(a, org, one);
-    float determinant = dot(a, one, p);
+    RtVec3 p = cross(fused, dir, two), q = cross(fused, org, one);
+    float determinant = dot(fused, one, p);
     if (is_edge_on(from, dir, determinant)) return false;
-    float u = dot(a, org, p) / determinant, v = dot(a, dir, q) / determinant;
-    *t = dot(a, two, q) / determinant;
+    float u = dot(fused, org, p) / determinant, v = dot(fused, dir, q) / determinant;
+    *t = dot(fused, two, q) / determinant;
     return u >= 0 && v >= 0 && u + v <= 1;
 }
 
 /* Woop, Benthin & Wald 2013. */
-static bool woop(Arithmetic a, const RtVec3 from[3], RtVec3 dir, float *t) {
+static bool woop(bool fused, const RtVec3 from[3], RtVec3 dir, float *t) {
     int kz = rt_major_axis(dir), kx = (kz + 1) % 3, ky = (kz + 2) % 3;
     float sx = dir.at[kx] / dir.at[kz], sy = dir.at[ky] / dir.at[kz], sz = 1 / dir.at[kz], x[3], y[3],
           edge[3];
     for (int i = 0; i < 3; i++) {
-        x[i] = sum_of_products(a, -sx, from[i].at[kz], from[i].at[kx], 1);
-        y[i] = sum_of_products(a, -sy, from[i].at[kz], from[i].at[ky], 1);
+        x[i] = sum_of_products(fused, -sx, from[i].at[kz], from[i].at[kx], 1);
+        y[i] = sum_of_products(fused, -sy, from[i].at[kz], from[i].at[ky], 1);
     }
     for (int i = 0; i < 3; i++) {
         int b = (i + 1) % 3, c = (i + 2) % 3;
-        edge[i] = sum_of_products(a, x[c], y[b], -y[c], x[b]);
+        edge[i] = sum_of_products(fused, x[c], y[b], -y[c], x[b]);
     }
     float least = fminf(edge[0], fminf(edge[1], edge[2])), most = fmaxf(edge[0], fmaxf(edge[1], edge[2]));
     float determinant = edge[0] + edge[1] + edge[2];
     if (least < 0 && most > 0) return false;
     if (is_edge_on(from, dir, determinant * dir.at[kz])) return false;
-    float at = sum_of_products(a, edge[0], from[0].at[kz], edge[1], from[1].at[kz]);
-    *t = sum_of_products(a, edge[2], from[2].at[kz], at, 1) * sz / determinant;
+    float at = sum_of_products(fused, edge[0], from[0].at[kz], edge[1], from[1].at[kz]);
+    *t = sum_of_products(fused, edge[2], from[2].at[kz], at, 1) * sz / determinant;
     return true;
 }
 
 /* Edge functions by Plücker coordinates, t from the plane. */
-static bool pluecker(Arithmetic a, const RtVec3 from[3], RtVec3 dir, float *t) {
+static bool pluecker(bool fused, const RtVec3 from[3], RtVec3 dir, float *t) {
     float edge[3];
     for (int i = 0; i < 3; i++) {
         RtVec3 x = from[i], y = from[(i + 1) % 3];
-        edge[i] = dot(a, cross(a, rt_sub(y, x), rt_add(x, y)), dir);
+        edge[i] = dot(fused, cross(fused, rt_sub(y, x), rt_add(x, y)), dir);
     }
     float least = fminf(edge[0], fminf(edge[1], edge[2])), most = fmaxf(edge[0], fmaxf(edge[1], edge[2]));
-    RtVec3 normal = cross(a, rt_sub(from[1], from[0]), rt_sub(from[2], from[0]));
-    float determinant = dot(a, normal, dir);
+    RtVec3 normal = cross(fused, rt_sub(from[1], from[0]), rt_sub(from[2], from[0]));
+    float determinant = dot(fused, normal, dir);
     if ((least < 0 && most > 0) || is_edge_on(from, dir, determinant)) return false;
-    *t = dot(a, normal, from[0]) / determinant;
+    *t = dot(fused, normal, from[0]) / determinant;
     return true;
 }
 
 /* The nearest hit, by all triangles. */
-static RtHit answer_in_float(const RtGeometry *g, TriangleTest *test, Arithmetic a, const RtRay *ray) {
+static RtHit answer_in_float(const RtGeometry *g, TriangleTest *test, bool fused, const RtRay *ray) {
     RtHit best = RT_MISS;
     for (uint32_t id = 0; id < g->object_count; id++) {
         const RtTriangle *triangle = &g->triangles[id];
         RtVec3 from[3];
         float t;
         for (int i = 0; i < 3; i++) from[i] = rt_sub(triangle->v[i], ray->org);
-        if (test(a, from, ray->dir, &t) && t >= ray->tmin && t <= ray->tmax && t < best.t)
+        if (test(fused, from, ray->dir, &t) && t >= ray->tmin && t <= ray->tmax && t < best.t)
             best = (RtHit){t, id};
     }
     return best;
@@ -181,7 +177,7 @@ RT_TEST(float32_triangle_tests_that_subtract_the_origin_first_have_nothing_wrong
             if (i % 10 == 0 && places[k].scale == 1)
                 ray.dir = rt_scale(ray.dir, ldexpf(1, (int)rt_random_below(&random, 120) - 60));
             if (!is_ray(&ray)) continue;
-            const Arithmetic fused = {i % 2 == 1};
+            const bool fused = i % 2 == 1;
             bool is_certain, must_hit;
             assert_ok(rt_verdict_certain(rt_judge(&g, &ray, false), &is_certain, &must_hit, error));
             certain += is_certain;

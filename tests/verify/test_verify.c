@@ -355,7 +355,7 @@ RT_TEST(rows_add_up_over_the_parameters_of_an_accelerator) {
     json_object_set_new(json_array_get(rows, 3), "occluded_wrong", json_integer(5));
     RtVerifySum *sums;
     uint32_t count;
-    assert_ok(rt_verify_sums(rows, RT_BY_ACCEL, &sums, &count, error));
+    assert_ok(rt_verify_sums(rows, false, &sums, &count, error));
     assert_int_equal(count, 3);
     assert_string_equal(sums[0].name, "item+bvh");
     assert_int_equal(sums[0].rows, 3);
@@ -370,7 +370,7 @@ RT_TEST(rows_add_up_over_the_parameters_of_an_accelerator) {
     assert_int_equal(rt_verify_total(rows).pairs, 500);
     assert_int_equal(rt_verify_total(rows).occluded_wrong, 5);
     rt_free(sums);
-    assert_ok(rt_verify_sums(rows, RT_BY_SCENE, &sums, &count, error));
+    assert_ok(rt_verify_sums(rows, true, &sums, &count, error));
     assert_int_equal(count, 2);
     assert_string_equal(sums[1].name, "tetra");
     assert_int_equal(sums[1].pairs, 200);

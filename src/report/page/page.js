@@ -179,12 +179,10 @@
   // ---- plots and print ----
 
   for (const plot of all('.plot')) {
-    const image = plot.querySelector('img'), size = () => {
-      image.width = image.naturalWidth;
-      plot.style.setProperty('--w', `${image.naturalWidth}px`);
-    };
-    if (image.complete) size();
-    else image.addEventListener('load', size);
+    // gnuplot writes the size as viewBox="0 0 WIDTH HEIGHT".
+    const image = plot.querySelector('img'), [, width] = atob(image.src.split(',')[1]).match(/viewBox="0 0 (\d+)/) ?? [0, 960];
+    image.width = width;
+    plot.style.setProperty('--w', `${width}px`);
     const button = make('button', { type: 'button', className: 'enlarge' }, 'Enlarge');
     button.setAttribute('aria-label', 'Enlarge ' + plot.getAttribute('aria-label'));
     button.setAttribute('aria-pressed', 'false');
