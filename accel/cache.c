@@ -27,13 +27,12 @@ static void begin(const RtAccel *accel, void *scratch) {
 
 /* ---- queries ---- */
 
-RT_KERNEL uint32_t find_occluder(const RtAccel *self, const RtScratch *scratch, const RtRay *ray,
-                                 RtTally *tallies) {
+RT_KERNEL void find_occluder(const RtAccel *self, const RtScratch *scratch, const RtRay *ray,
+                             uint32_t *occluder, RtTally *tallies) {
     const RtScene *scene = self->scene;
     RtTally *tally = tallies ? &tallies[RT_RAY_SHADOW] : NULL;
-    uint32_t none = RT_NO_OBJECT, occluder;
-    uint32_t *last = ray->source < scene->light_count ? (uint32_t *)scratch->own + ray->source : &none;
-    if (*last != RT_NO_OBJECT) {
+    uint32_t *last = ray->source < scene->light_count ? (uint32_t *)scratch->own + ray->source : NULL;
+    if (last && *last != RT_NO_OBJECT) {
         RtPreparedRay prepared;
         rt_hit_ray(&prepared, &scene->geometry, ray, scratch->crossings);
         RtHit hit = RT_MISS;
@@ -41,14 +40,14 @@ RT_KERNEL uint32_t find_occluder(const RtAccel *self, const RtScratch *scratch, 
         RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "object", .index = *last);
         if (rt_test_object(&scene->geometry, *last, &prepared, true, &hit, tally)) {
             rt_count_answer(true, tally);
-            return *last;
+            *occluder = *last;
+            return;
         }
     }
     RT_COUNT(tally, passed_on, 1);
     RT_OBSERVE(tally, .kind = RT_TRACED_PASSED_ON, .what = self->ops->name);
-    rt_hand_down(self, scratch, ray, 1, NULL, &occluder, tallies);
-    if (occluder < scene->geometry.object_count) *last = occluder;
-    return occluder;
+    rt_hand_down(self, scratch, ray, 1, NULL, occluder, tallies);
+    if (last && *occluder < scene->geometry.object_count) *last = *occluder;
 }
 
 /* Queries for nearest hits, and runs of rays of other kinds, are handed down. */
@@ -56,14 +55,12 @@ RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay
                      RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
     (void)counted;
     if (!any) rt_hand_down(accel, scratch, rays, count, hits, NULL, tallies);
-    for (size_t i = 0, next; any && i < count; i = next) {
-        next = i + 1;
-        if (rays[i].kind == RT_RAY_SHADOW) {
-            occluders[i] = find_occluder(accel, scratch, &rays[i], tallies);
-            continue;
-        }
-        while (next < count && rays[next].kind != RT_RAY_SHADOW) next++;
-        rt_hand_down(accel, scratch, rays + i, next - i, NULL, occluders + i, tallies);
+    for (size_t i = 0, first = 0; any && i < count; first = i) {
+        while (i < count && rays[i].kind != RT_RAY_SHADOW) i++;
+        if (i > first)
+            rt_hand_down(accel, scratch, rays + first, i - first, NULL, occluders + first, tallies);
+        for (; i < count && rays[i].kind == RT_RAY_SHADOW; i++)
+            find_occluder(accel, scratch, &rays[i], &occluders[i], tallies);
     }
 }
 

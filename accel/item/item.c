@@ -487,8 +487,9 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     RT_TRY(refuse_size(buffer, error));
     const RtSampling *s = &buffer->view.sampling;
     RtArena *memory = &accel->memory;
-    buffer->columns = rt_arena_alloc(memory, rt_item_tiles(s->columns) * RT_ITEM_TILE, sizeof(RtItemTerm));
-    buffer->rows = rt_arena_alloc(memory, rt_item_tiles(s->rows) * RT_ITEM_TILE, sizeof(RtItemTerm));
+    buffer->columns =
+        rt_arena_alloc(memory, (size_t)rt_item_tiles(s->columns) * RT_ITEM_TILE, sizeof(RtItemTerm));
+    buffer->rows = rt_arena_alloc(memory, (size_t)rt_item_tiles(s->rows) * RT_ITEM_TILE, sizeof(RtItemTerm));
     buffer->samples = rt_arena_alloc_unset(memory, rt_item_sample_count(buffer), sizeof(uint32_t));
     RT_TRY(rt_arena_check(memory, "an item buffer", error));
     buffer->projection = make_projection(&buffer->view);

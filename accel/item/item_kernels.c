@@ -252,7 +252,8 @@ RT_KERNEL uint32_t samples_of(const float *t, float near, const RtFloat4 edge[3]
     const RtFloats columns = rt_to_floats(rt_lane_numbers() & 3) + (float)column;
     uint32_t samples = 0;
     for (uint32_t i = 0; i < RT_ITEM_BLOCK_SAMPLES; i += RT_LANES) {
-        const RtFloats rows = rt_to_floats(rt_lane_numbers() >> 2) + (float)(row + i / RT_ITEM_BLOCK);
+        const uint32_t first_row = row + i / RT_ITEM_BLOCK;
+        const RtFloats rows = rt_to_floats(rt_lane_numbers() >> 2) + (float)first_row;
         uint32_t lanes = rt_le_bits(rt_all(near), rt_load(t + i));
         for (int k = 0; k < 3; k++) lanes &= ~rt_lt_bits(edge_at(edge, k, columns, rows), rt_all(0));
         samples |= lanes << i;

@@ -293,7 +293,7 @@ static RtStatus build_on_several(RtKd *kd, uint32_t objects, uint64_t limit, uin
     RT_TRY(make_subtree(kd, limit, &sharing.memory, objects, &root, error));
     RtStatus status = make_root(&root->builder, objects, threads, error);
     if (status == RT_OK)
-        status = rt_parallel_tasks(&root, 1, sizeof root, threads, build_subtree, &sharing, error);
+        status = rt_parallel_tasks(&root, 1, sizeof(void *), threads, build_subtree, &sharing, error);
     *fits = status == RT_OK && !sharing.memory.exceeded && sharing.bytes <= limit;
     if (*fits) status = join(root, &sharing, kd, threads, error);
     destroy_subtree(root);

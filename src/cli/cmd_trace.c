@@ -369,7 +369,7 @@ static RtStatus trace_tree(const Options *o, const RtScene *scene, RtAccel *acce
     RT_ARENA(arena);
     RT_TRY(rt_ray_trees_trace(&tree, accel, &(RtSample){o->pixel.x, o->pixel.y}, 1, o->depth, error));
     RtTally *costs = rt_arena_alloc(&arena, tree.count, sizeof(RtTally));
-    json_t **nodes = rt_arena_alloc(&arena, tree.count, sizeof *nodes);
+    json_t **nodes = rt_arena_alloc(&arena, tree.count, sizeof(void *));
     RT_TRY(rt_arena_check(&arena, "the counts of rays", error));
     for (uint32_t i = 0; i < tree.count; i++) {
         RT_OWNED(RtPath, path, rt_path_clear);

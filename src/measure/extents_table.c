@@ -223,7 +223,7 @@ static void fill_bench(Bench *bench, const Population *population, uint64_t seed
         bench->ids[i] = id;
         bench->boxes[i] = geometry->boxes[id];
     }
-    for (uint32_t k = 0; k < TRIES && bench->chord_count < CHORDS; k++) {
+    for (uint32_t k = 0; k < TRIES && bench->count > 0 && bench->chord_count < CHORDS; k++) {
         uint32_t id = bench->ids[k % bench->count];
         RtBall sphere = sphere_about_extents(geometry, id);
         RtRay *ray = &bench->chords[bench->chord_count];

@@ -10,7 +10,6 @@
 #include "core/base/words.h"
 
 #include <assert.h>
-#include <ctype.h>
 #include <inttypes.h>
 #include <jansson.h>
 #include <stdlib.h>
@@ -59,16 +58,14 @@ static RtStatus read_header(FILE *file, const char *path, char text[MOST_HEADER 
 /* {'descr': '<f4', 'fortran_order': False, 'shape': (7, 8), } as JSON: with double quotes, brackets and small
  * letters, without commas at the end. */
 static json_t *parse(const char *text) {
+    static const char python[] = "'()TF", as_json[] = "\"[]tf";
     char json[MOST_HEADER + 1];
     size_t length = 0;
     for (const char *c = text; *c; c++) {
         const char next = c[1 + strspn(c + 1, " \t\r\n")];
         if (*c == ',' && (next == ')' || next == ']' || next == '}')) continue;
-        json[length++] = *c == '\''                                                  ? '"'
-                         : *c == '('                                                 ? '['
-                         : *c == ')'                                                 ? ']'
-                         : strncmp(c, "True", 4) == 0 || strncmp(c, "False", 5) == 0 ? (char)tolower(*c)
-                                                                                     : *c;
+        const char *change = strchr(python, *c);
+        json[length++] = change ? as_json[change - python] : *c;
     }
     return json_loadb(json, length, JSON_REJECT_DUPLICATES, NULL);
 }

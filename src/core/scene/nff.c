@@ -195,6 +195,7 @@ static RtStatus read_cone(Reader *r) {
 static RtStatus read_vertices(Reader *r, bool patch, uint32_t *count) {
     const char *what =
         patch ? "a number of a vertex and its normal, x y z nx ny nz" : "a number of a vertex x y z";
+    *count = 0;
     RT_TRY(read_count(r, "the number of vertices", 3, UINT32_MAX, count));
     size_t least = patch ? 12 : 6; /* bytes of the shortest vertex, with blanks */
     size_t size = (size_t)(r->text.end - r->text.at) / least + 1;
