@@ -94,20 +94,13 @@ typedef struct RtScratch {
     RtCrossing *crossings; /* buffer of hit functions (rt_hit_ray) */
 } RtScratch;
 
-/* Where answers go, to hits[0..count) or occluders[0..count): one pointer, so that all arguments of a kernel
- * are in registers. */
-typedef union RtAnswers {
-    RtHit *hits;
-    uint32_t *occluders;
-} RtAnswers;
-
 /* A kernel. rays[0..count) are valid (rt_ray_is_valid). scratch[0] belongs to the layer; those of the layers
- * below follow. Counts are added to tallies[RT_RAY_KIND_COUNT], by the kind of each ray. An occluder is any
- * object that the ray hits, RT_NO_OBJECT if there is none, or RT_UNNAMED_OBJECT if the accelerator knows only
- * that there is one. */
+ * below follow. Answers go to hits[0..count) or occluders[0..count). Counts are added to
+ * tallies[RT_RAY_KIND_COUNT], by the kind of each ray. An occluder is any object that the ray hits,
+ * RT_NO_OBJECT if there is none, or RT_UNNAMED_OBJECT if the accelerator knows only that there is one. */
 #define RT_UNNAMED_OBJECT (UINT32_MAX - 1)
 typedef void RtKernel(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                      RtAnswers to, RtTally *tallies);
+                      RtHit *hits, uint32_t *occluders, RtTally *tallies);
 
 /* The kernels of an accelerator, as accel/kernel.h defines them. */
 struct RtKernels {
@@ -385,8 +378,7 @@ static inline void rt_trace_stream(const RtAccel *accel, const RtScratch *scratc
     const RtKernels *k = accel->kernels;
     RtKernel *kernel =
         tallies ? (hits ? k->nearest_counted : k->occluded_counted) : (hits ? k->nearest : k->occluded);
-    const RtAnswers to = hits ? (RtAnswers){.hits = hits} : (RtAnswers){.occluders = occluders};
-    kernel(accel, scratch, rays, count, to, tallies);
+    kernel(accel, scratch, rays, count, hits, occluders, tallies);
 }
 
 /* Nearest hits of a stream of valid rays: timed if `tallies` is NULL, otherwise counted in

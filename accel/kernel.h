@@ -138,8 +138,8 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
                                       bytes};
 #define RT_DEFINE_KERNEL(name, trace, any, counted)                                                          \
     static void name(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,        \
-                     RtAnswers to, RtTally *tallies) {                                                       \
-        trace(accel, scratch, rays, count, (any) ? NULL : to.hits, (any) ? to.occluders : NULL,              \
+                     RtHit *hits, uint32_t *occluders, RtTally *tallies) {                                   \
+        trace(accel, scratch, rays, count, (any) ? NULL : hits, (any) ? occluders : NULL,                    \
               (counted) ? tallies : NULL, any, counted);                                                     \
     }
 

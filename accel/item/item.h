@@ -10,7 +10,7 @@
  *
  * A z-buffer that interpolated depths would round otherwise than a ray tracer. This one has no arithmetic of
  * its own: at each sample that an object may be seen at, the object's hit function tells coverage and depth,
- * for the very ray that will be traced. Only where an object cannot be seen (item.c,
+ * for the very ray that will be traced. Only where an object cannot be seen (item_draw.c,
  * item_kernels.c), or is behind all that is drawn already, is it not asked. */
 #ifndef RT_ACCEL_ITEM_ITEM_H
 #define RT_ACCEL_ITEM_ITEM_H
@@ -70,7 +70,10 @@ static inline const RtGeometry *rt_item_geometry(const RtItemBuffer *buffer) {
     return &buffer->base.scene->geometry;
 }
 
-/* ---- item.c ---- */
+/* ---- item_draw.c ---- */
+
+/* Needs the view. */
+RtItemProjection rt_item_projection(const RtView *view);
 
 /* In views so wide that direction_error is larger everything is seen everywhere. */
 #define RT_ITEM_MAX_DIRECTION_ERROR 0x1p-10
@@ -112,6 +115,9 @@ void rt_item_draw_object(RtItemTile *tile, uint32_t id);
 
 /* To be called for a block whose samples have changed. */
 void rt_item_update_farthest(RtItemTile *tile, uint32_t block);
+
+/* Fills in the samples. */
+RtStatus rt_item_draw_all(RtItemBuffer *buffer, int threads, RtError *error);
 
 /* ---- item_kernels.c, for each instruction set ---- */
 

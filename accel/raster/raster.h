@@ -10,7 +10,7 @@
  * reports a hit at t, the ray's exact point at t is q - e, where q is a point of the object and |e| <= E
  * along each axis. Each buffer derives its own E, because its rays start elsewhere:
  *
- *     item    rays start at the centre:                  E = 2^-19 M + 2^-21 |eye|    (item.c)
+ *     item    rays start at the centre:                  E = 2^-19 M + 2^-21 |eye|    (item_draw.c)
  *     light   rays end there, and start in a domain:     E = 2^-18 reach + 2^-20 farthest (light_project.c)
  *
  * with M the largest distance along an axis from the eye to the object, reach the longest side of the box

@@ -37,8 +37,8 @@ static RtKernel *count_below;
 static uint64_t enormous_steps;
 
 static void count_enormously(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             RtAnswers to, RtTally *tallies) {
-    count_below(accel, scratch, rays, count, to, tallies);
+                             RtHit *hits, uint32_t *occluders, RtTally *tallies) {
+    count_below(accel, scratch, rays, count, hits, occluders, tallies);
     tallies[rays->kind].steps = enormous_steps;
 }
 
