@@ -8,7 +8,8 @@
 #
 # Libraries that raytally cannot keep from ending the process, or from carrying on, are left out:
 # - libgmp aborts by design (its manual, "Custom Allocation");
-# - pixman, below cairo, writes to memory that it did not get;
+# - pixman, below cairo, writes to memory that it did not get; cairo, writing SVG, leaves out what it has no memory for while its
+#   status is success (33 of its 254 allocations), and crashes at one;
 # - TBB, which Embree builds with, throws C++ exceptions where nobody can catch them: memory of libstdc++, and threads that
 #   Embree cannot start;
 # - fontconfig, freetype, expat and the loader of libraries do without, or with another font, and do not say so; fontconfig
@@ -156,7 +157,7 @@ allocations() {
     [ "$live" = 0 ] || complain "raytally $1: $live blocks are not freed"
     while read -r _ library count; do
         case $library in libgmp.* | libpixman* | libstdc++.* | libembree* | libfontconfig.* | libfreetype.* | libexpat.* | ld-linux* | libtbb*) continue ;; esac
-        [[ $library != libc.* ]] || [[ $1 != *.svg* ]] || continue
+        [[ $library != libc.* && $library != libcairo.* ]] || [[ $1 != *.svg* ]] || continue
         wanted "$1 alloc $library" || continue
         choose "$count"
         for n in $chosen; do
