@@ -65,7 +65,9 @@ static json_t *parse(const char *text) {
         const char next = c[1 + strspn(c + 1, " \t\r\n")];
         if (*c == ',' && (next == ')' || next == ']' || next == '}')) continue;
         const char *change = strchr(python, *c);
-        json[length++] = change ? as_json[change - python] : *c;
+        json[length] = *c;
+        if (change) json[length] = as_json[change - python];
+        length++;
     }
     return json_loadb(json, length, JSON_REJECT_DUPLICATES, NULL);
 }
