@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* Chunks are traced by all threads, each with a query of its own. The passes of plugins are timed in their
+ * process, by what is below. */
 #include "accel/pass.h"
 
 #include "accel/plugin.h"

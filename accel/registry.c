@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The list of accelerators. To add one, write its file, add a line here, and add the file to CMakeLists.txt.
- * Plugins register theirs at run time. */
+/* The list of accelerators. To add one: README.md of this folder. Plugins register theirs at run time. */
 #include "accel/accel.h"
 #include "accel/plugin.h"
 

@@ -49,7 +49,7 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtValue *values = what->values;
     RtBvh *self = (RtBvh *)accel;
     self->hierarchy = (RtHierarchy){.width = 2,
-                                    .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                                    .max_leaf_size = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                     .traversal_cost = values[PARAM_TRAVERSAL_COST].f};
     const RtTreeOptions options = {.method = (RtTreeMethod)values[PARAM_BUILD].choice,
                                    .bits = (uint32_t)values[PARAM_BITS].i,
@@ -57,7 +57,7 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
                                    .spatial = {.bins = (int)values[PARAM_BINS].i,
                                                .alpha = values[PARAM_ALPHA].f,
                                                .budget = values[PARAM_BUDGET].f,
-                                               .leaf = self->hierarchy.leaf_limit,
+                                               .max_leaf_size = self->hierarchy.max_leaf_size,
                                                .traversal = self->hierarchy.traversal_cost,
                                                .limit = what->limit},
                                    .reinsertion = (uint32_t)values[PARAM_REINSERTION].i,

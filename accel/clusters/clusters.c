@@ -76,7 +76,7 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     RtClusters *self = (RtClusters *)accel;
     RtHierarchy *hierarchy = &self->hierarchy;
     *hierarchy = (RtHierarchy){.width = (uint32_t)values[PARAM_WIDTH].i,
-                               .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                               .max_leaf_size = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                .traversal_cost = 1};
     self->nearest_first = values[PARAM_TRAVERSAL_ORDER].choice == 1;
     RT_TRY(rt_hierarchy_build(hierarchy, &accel->memory, &what->scene->geometry, &options, what->threads,

@@ -48,13 +48,13 @@ typedef struct Layout {
     uint32_t next;
 } Layout;
 
-/* A subtree of at most leaf_limit references becomes a leaf where that costs no more. */
+/* A subtree of at most max_leaf_size references becomes a leaf where that costs no more. */
 static Cost cost_of_both(Layout *layout, uint32_t index, const Cost *left, const Cost *right) {
     double area = rt_box_half_area(layout->tree->nodes[index].box);
     Cost inner = {left->references + right->references, left->leaves + right->leaves,
                   layout->self->traversal_cost * area + left->cost + right->cost};
     Cost leaf = {inner.references, 1, area * inner.references};
-    bool better = leaf.references <= layout->self->leaf_limit && leaf.cost <= inner.cost;
+    bool better = leaf.references <= layout->self->max_leaf_size && leaf.cost <= inner.cost;
     layout->leaf[index] = better;
     return better ? leaf : inner;
 }
@@ -479,7 +479,7 @@ static RtStatus check_node(Check *check, uint32_t index, uint32_t depth) {
     bool leaf = rt_node_is_leaf(node);
     if (depth > RT_TREE_MAX_DEPTH) return BROKEN(check, "node %u is too deep", index);
     if (++check->reached > self->node_count) return BROKEN(check, "node %u has two parents", index);
-    uint32_t least = leaf ? 1 : 2, most = leaf ? self->leaf_limit : self->width;
+    uint32_t least = leaf ? 1 : 2, most = leaf ? self->max_leaf_size : self->width;
     if (fanout < least || fanout > most)
         return BROKEN(check, "node %u has %u %s, not %u to %u", index, fanout, leaf ? "objects" : "children",
                       least, most);

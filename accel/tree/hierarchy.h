@@ -20,17 +20,17 @@ enum { RT_NODE_MAX_WIDTH = 16 };
 typedef struct RtNode {
     RtBox box;
     uint32_t first; /* inner: the first child, the others follow; leaf: the first of its ids */
-    uint32_t count; /* 2..width children, or RT_NODE_LEAF | 1..leaf_limit objects */
+    uint32_t count; /* 2..width children, or RT_NODE_LEAF | 1..max_leaf_size objects */
 } RtNode;
 
 typedef struct RtHierarchy {
     RtNode *nodes; /* [node_count] */
     uint32_t *ids; /* [id_count], leaf by leaf */
     uint32_t node_count, id_count;
-    uint32_t width;        /* most children of a node, 2..RT_NODE_MAX_WIDTH */
-    uint32_t leaf_limit;   /* most objects of a leaf */
-    double traversal_cost; /* of visiting an inner node, in object tests */
-    bool split_refs;       /* objects may be in several leaves (accel/clipping.h) */
+    uint32_t width;         /* most children of a node, 2..RT_NODE_MAX_WIDTH */
+    uint32_t max_leaf_size; /* most objects of a leaf */
+    double traversal_cost;  /* of visiting an inner node, in object tests */
+    bool split_refs;        /* objects may be in several leaves (accel/clipping.h) */
 } RtHierarchy;
 
 static inline bool rt_node_is_leaf(const RtNode *node) {

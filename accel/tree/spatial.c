@@ -356,7 +356,8 @@ static bool split_group(const Builder *b, Group *group, uint32_t counts[2]) {
     if (area_of(common) > b->least_overlap)
         plane = find_plane(b, group, box, (int)rt_bin_count(b->options->spatial.bins, 0));
     double least = fmin(sides.cost, plane.sides.cost);
-    if (count <= b->options->spatial.leaf && area * count <= area * b->options->spatial.traversal + least)
+    if (count <= b->options->spatial.max_leaf_size &&
+        area * count <= area * b->options->spatial.traversal + least)
         return false;
     if (!(plane.sides.cost < sides.cost)) return true;
     cut_at(b, group, &plane, counts);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Binary trees of references, and the methods that build them: the form of `bvh` and `clusters` before they
- * are laid out for tracing (hierarchy.h).
+/* Binary trees of references, and the methods that build them: the form of `bvh`, `clusters` and `wide`
+ * before they are laid out for tracing (hierarchy.h, wide/layout.c). rt_tree_build, in hierarchy.c, chooses
+ * among the methods.
  *
  * A reference is an object with its box, or with the box of a part of it (split references, Stich et al.
  * 2009). Each leaf is one reference; the box of every other node is the union of its children's. A complete
@@ -136,13 +137,13 @@ typedef struct RtTreeOptions {
     uint32_t bits;   /* lbvh, ploc: of a Morton code along each axis, 1..RT_MAX_MORTON_BITS */
     uint32_t radius; /* ploc: neighbours searched on either side */
     struct {
-        int bins;         /* also binned: along each axis, 2..RT_MAX_BINS */
-        double alpha;     /* spatial splits are tried where the sides overlap by more than this part of the
-                             root's area */
-        double budget;    /* most references per object; at least 1 */
-        uint32_t leaf;    /* a group of at most so many references is not cut if a leaf is cheaper */
-        double traversal; /* cost of an inner node, in object tests */
-        uint64_t limit;   /* most bytes of the tree and its layout */
+        int bins;      /* also binned: along each axis, 2..RT_MAX_BINS */
+        double alpha;  /* spatial splits are tried where the sides overlap by more than this part of the
+                          root's area */
+        double budget; /* most references per object; at least 1 */
+        uint32_t max_leaf_size; /* a group of at most so many references is not cut if a leaf is cheaper */
+        double traversal;       /* cost of an inner node, in object tests */
+        uint64_t limit;         /* most bytes of the tree and its layout */
     } spatial;
     struct {
         bool random;           /* the first attempt is a random permutation, too, not the order of ids */

@@ -182,7 +182,7 @@ static void split_costs(const Weight *sides[2], float split[RT_WIDE], int32_t le
 /* Makes a leaf of a small subtree if that costs no more. */
 static void consider_leaf(const Layout *self, uint32_t index, float area, Weight *own, Choice *chosen) {
     uint32_t count = own->references;
-    if (count > self->how->leaf_limit) return;
+    if (count > self->how->max_leaf_size) return;
     if (self->tree->split_refs) {
         uint32_t ids[RT_WIDE_MAX_LEAF];
         count = 0;

@@ -73,12 +73,12 @@ static RtStatus fill(RtWide *self, int place, const RtBuild *what, RtTreeMethod 
                                    .spatial = {.bins = (int)values[PARAM_BINS].i,
                                                .alpha = values[PARAM_ALPHA].f,
                                                .budget = values[PARAM_BUDGET].f,
-                                               .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                                               .max_leaf_size = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                                .traversal = 1,
                                                .limit = what->limit},
                                    .reinsertion = (uint32_t)values[PARAM_REINSERTION].i,
                                    .batch = values[PARAM_BATCH].f};
-    const RtWideLayout how = {.leaf_limit = options.spatial.leaf,
+    const RtWideLayout how = {.max_leaf_size = options.spatial.max_leaf_size,
                               .block_cost = values[PARAM_BLOCK_COST].f,
                               .huge_pages = values[PARAM_HUGE_PAGES].flag,
                               .threads = what->threads,
@@ -163,7 +163,7 @@ static RtStatus flatten(const RtWideTree *self, RtArena *memory, RtHierarchy *to
     Sizes sizes = {0, 0};
     measure(self, top, &sizes);
     *to = (RtHierarchy){.width = RT_WIDE,
-                        .leaf_limit = RT_WIDE_MAX_LEAF,
+                        .max_leaf_size = RT_WIDE_MAX_LEAF,
                         .traversal_cost = 1,
                         .split_refs = self->split_refs,
                         .nodes = rt_arena_alloc(memory, sizes.nodes, sizeof(RtNode)),

@@ -159,8 +159,8 @@ static inline RtBox rt_wide_children_box(const RtWideNode *node) {
 
 /* How a tree is laid out. */
 typedef struct RtWideLayout {
-    uint32_t leaf_limit; /* objects of a leaf at most */
-    double block_cost;   /* of testing a block, or an object of a list, relative to visiting a node */
+    uint32_t max_leaf_size; /* objects of a leaf at most */
+    double block_cost;      /* of testing a block, or an object of a list, relative to visiting a node */
     bool huge_pages;
     int threads;
     uint64_t limit; /* bytes */

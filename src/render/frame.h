@@ -90,7 +90,7 @@ typedef struct RtFrameObserver {
 typedef struct RtFrameOptions {
     uint32_t depth;          /* levels of the ray tree, 1..RT_MAX_DEPTH; the primary ray is the first */
     int threads;             /* 0 = all processors */
-    bool counted;            /* fill tallies and the count channels; else the timed kernels run */
+    bool counted;            /* fill tallies and costs; else the timed kernels run */
     uint32_t cost_kinds;     /* ray kinds that count towards a sample's cost, bits 1 << RtRayKind; 0: all */
     bool light_from_outside; /* light surfaces from outside, whichever side the ray comes from */
     bool keep_rays;          /* keep all traced rays */

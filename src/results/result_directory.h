@@ -7,6 +7,8 @@
  *   rounds.csv       the times of every round, the source of times.csv
  *   distributions.csv, histograms.csv
  *                    distributions of counts, if the experiment has them; exact
+ *   frame.csv, render.csv
+ *                    frames as sums of their rays, and rendered ones, if the experiment has them
  *   images/          a picture of each scene
  *   experiment.yaml  a copy of the experiment
  *   manifest.json    seed, fingerprints, version, compiler, machine, date

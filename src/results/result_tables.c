@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* A table is a list of groups of columns, and a function that returns its row of a number. Columns are listed
+ * by macros, X(id, form, title, meaning, value), the value being an expression of the row; groups that
+ * several tables have in common are written once. */
 #include "results/result_tables.h"
 
 #include "accel/columns.h"

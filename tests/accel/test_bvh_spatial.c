@@ -171,10 +171,13 @@ RT_TEST(hostile_rays_hit_like_brute) {
 
 /* Enough objects for all threads to build the top, and for groups of more than SMALL references. */
 RT_TEST(the_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
-    const RtTreeOptions options = {
-        .method = RT_TREE_SPATIAL,
-        .spatial = {
-            .bins = 16, .alpha = 1e-5, .budget = 1.5, .leaf = 8, .traversal = 1, .limit = UINT64_MAX}};
+    const RtTreeOptions options = {.method = RT_TREE_SPATIAL,
+                                   .spatial = {.bins = 16,
+                                               .alpha = 1e-5,
+                                               .budget = 1.5,
+                                               .max_leaf_size = 8,
+                                               .traversal = 1,
+                                               .limit = UINT64_MAX}};
     OWNED_SCENE scene = make_slivers(12000, 7, 1, 0);
     OWNED_TREE one = {0};
     assert_ok(rt_tree_build(&one, &scene.geometry, &options, 1, error));
@@ -193,7 +196,8 @@ RT_TEST(what_may_take_too_much_is_refused_with_what_would_fit) {
     OWNED_SCENE scene = make_slivers(1000, 5, 1, 0);
     RtTreeOptions options = {
         .method = RT_TREE_SPATIAL,
-        .spatial = {.bins = 16, .alpha = 0, .budget = 4, .leaf = 8, .traversal = 1, .limit = 300000}};
+        .spatial = {
+            .bins = 16, .alpha = 0, .budget = 4, .max_leaf_size = 8, .traversal = 1, .limit = 300000}};
     RtTree tree;
     RtError refusal;
     assert_int_equal(rt_tree_build(&tree, &scene.geometry, &options, 1, &refusal), RT_BAD_INPUT);

@@ -8,7 +8,7 @@
 #include "accel/wide/wide.h"
 
 static const RtWideLayout plain = {
-    .leaf_limit = 4, .block_cost = 1, .huge_pages = true, .threads = 1, .limit = UINT64_MAX};
+    .max_leaf_size = 4, .block_cost = 1, .huge_pages = true, .threads = 1, .limit = UINT64_MAX};
 
 static const RtTreeOptions binned = {.method = RT_TREE_BINNED, .spatial.bins = 16};
 
@@ -107,7 +107,7 @@ RT_TEST(split_references_keep_their_nodes_and_so_does_a_tree_if_memory_is_short)
     OWNED_SCENE scene = open_scene("random:n=200,shape=triangle,radius=3");
     const RtTreeOptions how = {
         .method = RT_TREE_SPATIAL,
-        .spatial = {.bins = 16, .budget = 2, .leaf = 4, .traversal = 1, .limit = UINT64_MAX}};
+        .spatial = {.bins = 16, .budget = 2, .max_leaf_size = 4, .traversal = 1, .limit = UINT64_MAX}};
     OWNED_TREE split = {0}, whole = build_tree(scene.geometry.boxes, 200, binned, 1);
     assert_ok(rt_tree_build(&split, &scene.geometry, &how, 1, error));
     const uint32_t used = split.used;
