@@ -261,21 +261,17 @@ RT_KERNEL uint32_t samples_of(const float *t, float near, const RtFloat4 edge[3]
     return samples;
 }
 
-/* A triangle in all lanes, for rays from the eye. */
-RT_KERNEL RtRayTriangles everywhere(const RtItemBuffer *buffer, const RtTriangle *triangle) {
-    RtRayTriangles pairs = {.tmin = rt_all((float)buffer->view.near), .tmax = rt_all(INFINITY)};
-    for (int a = 0; a < 3; a++) {
-        pairs.org[a] = rt_all((float)buffer->view.eye.at[a]);
-        for (int i = 0; i < 3; i++) pairs.v[i][a] = rt_all(triangle->v[i].at[a]);
-    }
-    return pairs;
-}
-
 /* Tests samples of the block from `first` on, a bit each, against one triangle, and keeps the nearest hits.
  */
-RT_KERNEL void draw_block(RtItemTile *tile, uint32_t first, uint32_t samples, RtRayTriangles *pairs,
-                          uint32_t id) {
-    uint32_t nearer = 0;
+RT_KERNEL void draw_block(RtItemTile *tile, uint32_t first, uint32_t samples, uint32_t triangle) {
+    const RtGeometry *g = rt_item_geometry(tile->buffer);
+    const uint32_t id = g->triangle_ids[triangle];
+    RtRayTriangles pairs = {.tmin = rt_all((float)tile->buffer->view.near), .tmax = rt_all(INFINITY)};
+    bool nearer = false;
+    for (int a = 0; a < 3; a++) {
+        pairs.org[a] = rt_all((float)tile->buffer->view.eye.at[a]);
+        for (int i = 0; i < 3; i++) pairs.v[i][a] = rt_all(g->triangles[triangle].v[i].at[a]);
+    }
     tile->tally.object_tests += (uint32_t)__builtin_popcount(samples);
     for (uint32_t i = 0; i < RT_ITEM_BLOCK_SAMPLES; i += RT_LANES) {
         const float *from[RT_LANES];
@@ -285,8 +281,8 @@ RT_KERNEL void draw_block(RtItemTile *tile, uint32_t first, uint32_t samples, Rt
         if (!lanes) continue;
         for (uint32_t k = 0; k < RT_LANES; k++) from[k] = tile->dir[first + i + k];
         rt_load_columns(from, dir);
-        for (int a = 0; a < 3; a++) pairs->dir[a] = dir[a];
-        lanes &= rt_hit_pairs(pairs, &at);
+        for (int a = 0; a < 3; a++) pairs.dir[a] = dir[a];
+        lanes &= rt_hit_pairs(&pairs, &at);
         rt_store(t, at);
         tile->tally.object_hits += (uint32_t)__builtin_popcount(lanes);
         for (; lanes; lanes &= lanes - 1) {
@@ -294,7 +290,7 @@ RT_KERNEL void draw_block(RtItemTile *tile, uint32_t first, uint32_t samples, Rt
             if (!rt_hit_before(t[k], id, (RtHit){tile->t[sample], tile->id[sample]})) continue;
             tile->t[sample] = t[k];
             tile->id[sample] = id;
-            nearer = 1;
+            nearer = true;
         }
     }
     if (nearer) rt_item_update_farthest(tile, first / RT_ITEM_BLOCK_SAMPLES);
@@ -333,7 +329,6 @@ RT_KERNEL void draw_triangle(RtItemTile *tile, uint32_t triangle, const Projecte
     if (!open) return;
     for (int a = 0; a < 3; a++)
         edge[a] = (RtFloat4){projected->edge[0][a][k], projected->edge[1][a][k], projected->edge[2][a][k], 0};
-    RtRayTriangles pairs = everywhere(tile->buffer, &g->triangles[triangle]);
     const RtFloat4 most = edge[0] + (rt_max(edge[1], zero) + rt_max(edge[2], zero)) * (RT_ITEM_BLOCK - 1);
     for (; open; open &= open - 1) {
         const uint32_t block = (uint32_t)__builtin_ctzll(open), first = block * RT_ITEM_BLOCK_SAMPLES;
@@ -342,7 +337,7 @@ RT_KERNEL void draw_triangle(RtItemTile *tile, uint32_t triangle, const Projecte
         if (rt_lt_bits(most + edge[1] * (float)column + edge[2] * (float)row, zero)) continue;
         uint32_t samples = samples_of(&tile->t[first], near, edge, column, row);
         if (__builtin_popcount(samples) >= MANY_SAMPLES) {
-            draw_block(tile, first, samples, &pairs, g->triangle_ids[triangle]);
+            draw_block(tile, first, samples, triangle);
             continue;
         }
         for (; samples; samples &= samples - 1) {

@@ -2,12 +2,12 @@
 /* Answering shadow rays in streams; compiled once for each instruction set (accel/isa.h).
  *
  * A stream is answered in blocks of rays, so that the memory each ray needs next is on its way while others
- * are worked on. First each ray finds the list of its cell. Then rays walk through
- * their lists in rounds. In a round each ray that is left comes to its next entry that is not deeper than its
- * origin, which makes a pair of a ray and an object. Pairs with triangles are tested in lanes. A ray drops
- * out when it is occluded or at the end of its list. No ray depends on another, so counts are the same in
- * streams of any length. Rays at the end of a list that was cut, and rays that are not exactly a shadow ray,
- * are passed on together. A step is an entry that makes a pair. */
+ * are worked on. First each ray finds the list of its cell. Then rays walk through their lists in rounds. In
+ * a round each ray that is left comes to its next entry that is not deeper than its origin, which makes a
+ * pair of a ray and an object. Pairs with triangles are tested in lanes. A ray drops out when it is occluded
+ * or at the end of its list. No ray depends on another, so counts are the same in streams of any length. Rays
+ * at the end of a list that was cut, and rays that are not exactly a shadow ray, are passed on together. A
+ * step is an entry that makes a pair. */
 #include "accel/light/light.h"
 
 #include "accel/kernel.h"
