@@ -6,7 +6,6 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/table.h"
-#include "results/result_tables.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -553,7 +552,8 @@ static void judge_parsed(const RtClaimCase *judge, RtClaimPoint *points, RtClaim
     uint32_t known = 0;
     const uint32_t count = rt_claim_gather(judge, points);
     for (uint32_t k = 0; k < count; k++) known += rt_claim_point_known(&points[k]) ? 1 : 0;
-    if (!rt_claim_any_measured(results, claim, points, count)) {
+    const bool measured = rt_claim_any_measured(results, claim, points, count);
+    if (!measured) {
         *result = no_figure(RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured");
     } else if (known == 0) {
         *result = rt_claim_subject(claim->first.measure) == RT_SUBJECT_STRUCTURE
@@ -564,6 +564,7 @@ static void judge_parsed(const RtClaimCase *judge, RtClaimPoint *points, RtClaim
         const bool whole = claim->form == RT_CLAIM_EXPONENT || is_crossover(claim);
         judge_points(judge, points, whole ? count : drop_unknown(points, count), result);
     }
+    result->measured = measured;
     result->whole = known == count && count > 0;
     if (known > 0 && known < count) {
         if (!is_crossover(claim)) result->verdict = worse(result->verdict, RT_CLAIM_UNDECIDED);
@@ -656,10 +657,4 @@ void rt_claims_print(const RtResults *results, FILE *out) {
                 RT_CLAIM_RAYS);
     rt_claims_level(results, level);
     if (*level) fprintf(out, "  %s\n", level);
-}
-
-void rt_print_summary(const RtResults *results, FILE *out) {
-    rt_print_outcome(results, out);
-    rt_claims_print(results, out);
-    rt_print_null_runs(results, out);
 }

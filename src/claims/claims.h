@@ -51,7 +51,7 @@ typedef struct RtClaimResult {
      * and the largest of many. */
     char figures[RT_MAX_CLAIM_FIGURES];
     char value[RT_MAX_CLAIM_VALUE]; /* of a readout, for a sentence: "1.43 [1.40, 1.47]", "0.30 to 0.89" */
-    bool whole;                     /* the values of all its cells are known */
+    bool measured, whole;           /* any, or all values of its cells are known */
 } RtClaimResult;
 
 /* "holds", "does not hold", "undecided", "no measurements", "figure". */
@@ -78,8 +78,5 @@ void rt_claims_level(const RtResults *results, char out[RT_MAX_CLAIM_LEVEL]);
 
 /* Prints all claims with their verdicts, and which of them changed after the run. */
 void rt_claims_print(const RtResults *results, FILE *out);
-
-/* What a run ends with: its outcome, claims and null runs (results/result_tables.h). */
-void rt_print_summary(const RtResults *results, FILE *out);
 
 #endif

@@ -76,7 +76,7 @@ static RtEstimate value_at(const RtClaimCase *of, RtClaimMeasure measure, const 
     }
     if (measure == RT_CLAIM_OBJECTS)
         return rt_estimate_exactly(results->workloads[t].known ? results->workloads[t].objects : (double)NAN);
-    if (measure == RT_CLAIM_RAYS) return rt_estimate_exactly(whole_rays(results, t, cell->kind));
+    if (measure == RT_CLAIM_RAY_COUNT) return rt_estimate_exactly(whole_rays(results, t, cell->kind));
     if (measure == RT_CLAIM_SHARE) return rt_estimate_exactly(whole_rays(results, t, cell->kind) / rays);
     const RtCost cost = rt_results_cost(results, t, c, cell->kind);
     const double counts[] = {[RT_CLAIM_OBJECT_TESTS] = cost.object_tests,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally merge, plot and report: result directories joined from shards, and their plots, reports and index
  * made again. */
-#include "claims/claims.h"
+#include "claims/findings.h"
 #include "cli/cli.h"
 #include "core/base/file.h"
 #include "core/base/words.h"
@@ -68,7 +68,7 @@ RtStatus rt_command_merge(int argc, char **argv, RtError *error) {
     RT_OWNED(RtResults, results, rt_results_clear);
     static RtExperiment experiment;
     RT_TRY(rt_merge(o.directories, o.count, &o.how, &experiment, &results, error));
-    rt_print_summary(&results, stdout);
+    rt_print_summary(&results, o.how.directory, stdout);
     printf("\nReport: %s/report.html\n", o.how.directory);
     return RT_OK;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally run: experiments, from their YAML to result directories. */
-#include "claims/claims.h"
+#include "claims/findings.h"
 #include "cli/cli.h"
 #include "cli/jobs.h"
 #include "core/base/words.h"
@@ -157,7 +157,7 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     RtStatus status = rt_run_experiment(results, how, error);
     rt_progress_end(&progress);
     if (status != RT_OK) return status;
-    rt_print_summary(results, stdout);
+    rt_print_summary(results, o->how.directory, stdout);
     if (!how->workload.only.part_count && !how->workload.only.shards)
         printf("\nReport: %s/report.html\n", how->directory);
     RT_TRY(rt_results_check(results, error));

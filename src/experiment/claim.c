@@ -197,9 +197,10 @@ static RtStatus check_second(const Reader *r) {
         for (uint32_t c = 0; c < experiment->candidate_count; c++) {
             const RtClaimCell cell = {t, c, claim->first.kind};
             RtClaimCell partner = cell;
-            if (claim->apart && (!rt_claim_side_has(experiment, &claim->first, t, c) ||
-                                 !rt_candidate_is_called(&experiment->candidates[c], claim->first.accel)))
-                continue;
+            const char *accel = claim->apart ? claim->first.accel : claim->second.accel;
+            const bool called = !*accel || strcmp(accel, RT_CLAIM_ALL) == 0 ||
+                                rt_candidate_is_called(&experiment->candidates[c], accel);
+            if (!called || (claim->apart && !rt_claim_side_has(experiment, &claim->first, t, c))) continue;
             const uint32_t count = rt_claim_partner(experiment, claim, &cell, &partner);
             differs |= count > 0 && (partner.workload != t || partner.candidate != c);
             if (count > 1 && claim->apart)
@@ -359,6 +360,15 @@ static const char *value_of(const RtClaimSide *side, const RtSweptKey *key) {
     return NULL;
 }
 
+/* Places of a parameter that only the other side has are not this one's. */
+static void drop_places(const RtExperiment *experiment, RtClaimSide *side) {
+    uint32_t kept = 0;
+    for (uint32_t p = 0; p < side->place_count; p++) {
+        if (sweeps(experiment, side, &side->places[p].key)) side->places[kept++] = side->places[p];
+    }
+    side->place_count = kept;
+}
+
 /* What `side` does not name is as in `other`. */
 static void inherit_places(const RtExperiment *experiment, const RtClaimSide *other, RtClaimSide *side) {
     if (!*side->scene) memcpy(side->scene, other->scene, sizeof side->scene);
@@ -464,6 +474,7 @@ static RtStatus read_ratio(Reader *r) {
     }
     claim->apart = true;
     inherit_places(r->experiment, second, first);
+    drop_places(r->experiment, second);
     inherit_places(r->experiment, first, second);
     return check_second(r);
 }
@@ -608,10 +619,13 @@ bool rt_claim_side_has(const RtExperiment *experiment, const RtClaimSide *side, 
     return !*side->scene || rt_workload_is_called(&experiment->workloads[t], side->scene);
 }
 
-/* Whether two specs have the same values of all parameters that both sweep and the side does not name. */
-static bool agree(const RtClaimSide *side, bool scene, const RtSwept *a, const RtSwept *b) {
+/* Whether two specs have the same values of all parameters that both sweep and the second side does not name;
+ * of a crossover only of its own. */
+static bool agree(const RtClaim *claim, bool scene, const RtSwept *a, const RtSwept *b) {
+    const RtClaimSide *side = &claim->second;
     for (uint32_t i = 0; i < a->count; i++) {
         const RtSweptKey key = {.key = a->keys[i], .scene = scene};
+        if (!claim->apart && strcmp(key.key, claim->key.key) != 0) continue;
         for (uint32_t k = 0; k < b->count; k++) {
             if (strcmp(a->keys[i], b->keys[k]) == 0 && !value_of(side, &key) &&
                 !rt_swept_equal(a->values[i], b->values[k]))
@@ -631,7 +645,7 @@ static bool is_partner(const RtExperiment *experiment, const RtClaim *claim, con
     const RtCandidate *own = &experiment->candidates[of->candidate], *its = &experiment->candidates[c];
     if (its->excluded >> t & 1) return false;
     if (alike &&
-        !(agree(second, true, &here->swept, &there->swept) && agree(second, false, &own->swept, &its->swept)))
+        !(agree(claim, true, &here->swept, &there->swept) && agree(claim, false, &own->swept, &its->swept)))
         return false;
     return !claim->apart || (rt_claim_side_has(experiment, second, t, c) &&
                              (*second->scene || strcmp(here->stem, there->stem) == 0));

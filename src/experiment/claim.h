@@ -71,7 +71,7 @@ typedef enum RtClaimSubject {
     X(BREAK_EVEN, "break_even", " rays", STRUCTURE)                                                          \
     X(RENDER_TIME, "render_time", " s", STRUCTURE)                                                           \
     X(QUERY_SHARE, "query_share", "", STRUCTURE)                                                             \
-    X(RAYS, "rays", "", SET)                                                                                 \
+    X(RAY_COUNT, "rays", "", SET)                                                                            \
     X(SHARE, "share", "", SET)                                                                               \
     X(HITS, "hits", "", SET)                                                                                 \
     X(OBJECTS, "objects", "", SCENE)

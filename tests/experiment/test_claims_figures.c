@@ -250,7 +250,8 @@ RT_TEST(a_correlation_is_within_each_scene_and_a_claim_holds_for_each) {
         set(1, c, (uint64_t)pow(10, c + 4), pow(10, c + 4), pow(10, c + 4));
     }
     is_false("correlation of object_tests and time of all > 0.9", "-1.00 over 4 values (random:n=10)");
-    shows("correlation of object_tests and time of all on random:n=100", "1.00 over 4 values (random:n=100)");
+    shows("correlation of object_tests and time of all on random:n=100",
+          "1.00 [1.00, 1.00] over 4 values (random:n=100)");
     shows("correlation of object_tests and time of bvh", "fewer than two values");
 }
 

@@ -114,8 +114,8 @@ PLACE_TEST(a_bad_paper_is_refused_with_its_line) {
         const char *key, *message;
     } cases[] = {
         {"paper: {citation: C, page: 1, quote: Q, verdict: partly}\n",
-         ":12:50: paper.verdict: invalid value 'partly': expected confirmed, in part, not confirmed, or "
-         "true"},
+         ":12:50: paper.verdict: invalid value 'partly': expected confirmed, in part, not confirmed, "
+         "true of its machine, not tested, or no claim"},
         {"paper: {citation: C, page: 1}\n", ":12:1: paper: 'quote' is missing"},
         {"paper: [{citation: C, page: 1, quote: Q, verdit: in part}]\n",
          ":12:42: paper[0]: unknown key 'verdit'"},
