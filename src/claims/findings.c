@@ -52,31 +52,35 @@ static RtStatus judge(const RtResults *results, const RtFindingPiece *piece, Oth
     return rt_claim_judge_text(of, piece->expression, elsewhere, result, error);
 }
 
+static void set_mark(RtFindingSegment *segment, RtFindingMark mark, const char *said) {
+    segment->mark = mark;
+    segment->said = said;
+}
+
 static void fill_segment(const RtResults *results, const RtFindingPiece *piece, Other *other,
                          RtFindingSegment *segment) {
     RtClaimResult result;
     RtError why = {RT_OK, ""};
-    *segment = (RtFindingSegment){.mark = RT_FINDING_PLAIN};
+    *segment = (RtFindingSegment){.said = ""};
     rt_append_text(segment->text, RT_MAX_TEXT, "%.*s", (int)piece->length, piece->words);
     if (piece->sort < RT_FINDING_READOUT) return;
-    const RtStatus status = judge(results, piece, other, &result, &why);
     const bool readout = piece->sort == RT_FINDING_READOUT;
-    if (status != RT_OK) {
-        segment->mark = RT_FINDING_BROKEN;
-        if (readout) rt_append_text(segment->text, RT_MAX_TEXT, "unknown");
+    if (judge(results, piece, other, &result, &why) != RT_OK) {
+        rt_append_text(segment->text, RT_MAX_TEXT, "%s", readout ? "unknown" : "");
+        set_mark(segment, RT_FINDING_BROKEN, "no results");
         rt_append_text(segment->note, sizeof segment->note, "%s: %s", piece->expression, why.message);
         return;
     }
-    if (readout) rt_append_text(segment->text, RT_MAX_TEXT, "%s", result.value);
-    if (readout)
-        segment->mark = result.whole && strcmp(result.value, "unknown") != 0 ? RT_FINDING_FIGURE
-                        : result.measured                                    ? RT_FINDING_BROKEN
-                                                                             : RT_FINDING_MISSING;
+    rt_append_text(segment->text, RT_MAX_TEXT, "%s", readout ? result.value : "");
+    if (!result.measured)
+        set_mark(segment, RT_FINDING_MISSING, "no measurements");
+    else if (readout && !result.whole)
+        set_mark(segment, RT_FINDING_BROKEN, "some values are unknown");
+    else if (readout ? strcmp(result.value, "unknown") == 0 : result.verdict != RT_CLAIM_HOLDS)
+        set_mark(segment, RT_FINDING_BROKEN, readout ? "" : rt_claim_verdict_name(result.verdict));
     else
-        segment->mark = result.verdict == RT_CLAIM_HOLDS        ? RT_FINDING_UPHELD
-                        : result.verdict == RT_CLAIM_UNMEASURED ? RT_FINDING_MISSING
-                                                                : RT_FINDING_BROKEN;
-    rt_append_text(segment->note, sizeof segment->note, "%s%s%s: %s, %s", *piece->from ? piece->from : "",
+        set_mark(segment, readout ? RT_FINDING_FIGURE : RT_FINDING_UPHELD, "");
+    rt_append_text(segment->note, sizeof segment->note, "%s%s%s: %s, %s", piece->from,
                    *piece->from ? ": " : "", piece->expression, rt_claim_verdict_name(result.verdict),
                    result.figures);
 }
@@ -105,19 +109,14 @@ void rt_finding_clear(RtFinding *finding) {
     *finding = (RtFinding){0};
 }
 
-const char *rt_finding_mark(const RtFindingSegment *segment) {
-    return segment->mark == RT_FINDING_BROKEN    ? "does not hold"
-           : segment->mark == RT_FINDING_MISSING ? "no measurements"
-                                                 : "";
-}
-
 char *rt_finding_text(const RtFinding *finding) {
     const size_t size = (size_t)finding->count * (RT_MAX_TEXT + 32) + 1;
     char *text = rt_alloc(size, 1);
     for (uint32_t i = 0; text && i < finding->count; i++) {
         const RtFindingSegment *segment = &finding->segments[i];
-        const char *mark = rt_finding_mark(segment);
-        rt_append_text(text, size, "%s%s%s%s", segment->text, *mark ? " [" : "", mark, *mark ? "]" : "");
+        const bool said = *segment->said;
+        rt_append_text(text, size, "%s%s%s%s", segment->text, said ? " [" : "", segment->said,
+                       said ? "]" : "");
     }
     return text;
 }
@@ -148,8 +147,8 @@ static uint32_t print_broken(const RtResults *results, const RtFinding *finding,
     uint32_t wrong = finding->broken;
     for (uint32_t i = 0; i < finding->count; i++) {
         const RtFindingSegment *segment = &finding->segments[i];
-        const char *mark = rt_finding_mark(segment);
-        if (*mark && out) fprintf(out, "  %-15s  %s\n  %-15s  %s\n", mark, segment->text, "", segment->note);
+        if (segment->mark >= RT_FINDING_MISSING && out)
+            fprintf(out, "  %-15s  %s\n  %-15s  %s\n", segment->said, segment->text, "", segment->note);
     }
     for (uint32_t i = 0; i < experiment->paper_count; i++) {
         const RtPaper *paper = &experiment->papers[i];
@@ -178,6 +177,7 @@ void rt_findings_print(const RtResults *results, const char *directory, FILE *ou
 
 RtStatus rt_findings_check(const RtResults *results, const char *directory, RtError *error) {
     RtFinding finding;
+    RT_TRY(rt_claims_check(results, error));
     RT_TRY(rt_finding_fill(results, directory, &finding, error));
     const uint32_t wrong = print_broken(results, &finding, NULL);
     rt_finding_clear(&finding);

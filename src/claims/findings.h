@@ -15,6 +15,7 @@ typedef enum RtFindingMark {
 
 typedef struct RtFindingSegment {
     RtFindingMark mark;
+    const char *said; /* beside it: "does not hold", "undecided", "no measurements"; "" if nothing is wrong */
     char text[RT_MAX_TEXT]; /* as a reader sees it */
     char note[RT_MAX_CLAIM + RT_MAX_CLAIM_FIGURES +
               64]; /* the expression, its verdict and figures; "" of text */
@@ -35,16 +36,14 @@ void rt_finding_clear(RtFinding *finding);
  * memory is short. */
 char *rt_finding_text(const RtFinding *finding);
 
-/* What readers see beside a segment: "does not hold", "no measurements", or "". */
-const char *rt_finding_mark(const RtFindingSegment *segment);
-
 /* What keeps a paper's verdict from being supported by its claims; "" if nothing does. */
 const char *rt_paper_problem(const RtResults *results, const RtPaper *paper);
 
 /* Prints the finding, which of its expressions do not hold, and verdicts on papers that are not supported. */
 void rt_findings_print(const RtResults *results, const char *directory, FILE *out);
 
-/* RT_MISMATCH if an expression of the finding is broken, or a verdict on a paper is not supported. */
+/* RT_MISMATCH if a claim does not hold (rt_claims_check), an expression of the finding is broken, or a
+ * verdict on a paper is not supported. */
 RtStatus rt_findings_check(const RtResults *results, const char *directory, RtError *error);
 
 /* What a run ends with: its outcome, claims, finding and null runs (results/result_tables.h). */

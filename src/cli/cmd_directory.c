@@ -29,6 +29,7 @@ typedef struct Options {
     RtRunOptions how;   /* of `merge`; of `plot` only the allowed scripts */
     bool column;        /* of `plot` */
     const char *folder; /* of `report`, or NULL */
+    bool strict;        /* of `report` */
 } Options;
 
 #define ONE_DIRECTORY RT_ARGUMENT("DIR", directories[0], RT_DIRECTORY_MISSING)
@@ -122,11 +123,14 @@ RtStatus rt_command_plot(int argc, char **argv, RtError *error) {
 /* ---- report ---- */
 
 static RtStatus report(const char *directory, RtResults *results, const void *options, RtError *error) {
-    (void)options;
+    const Options *o = options;
+    const char *warning = results->experiment->warning.message;
+    if (*warning) fprintf(stderr, "raytally: %s\n", warning);
     RT_TRY(rt_report_write(results, directory, error));
     rt_claims_print(results, stdout);
+    rt_findings_print(results, directory, stdout);
     printf("%sReport: %s/report.html\n", results->experiment->claim_count ? "\n" : "", directory);
-    return RT_OK;
+    return o->strict ? rt_findings_check(results, directory, error) : RT_OK;
 }
 
 static void take_index(void *options, const char *text, struct argp_state *state) {
@@ -146,6 +150,8 @@ static const RtOption report_options[] = {
     {"index", 'i', "FOLDER", RT_TO_TAKE(take_index),
      "Write FOLDER/index.html and FOLDER/index.md, which list all result directories in FOLDER, as in "
      "`--index results`"},
+    {"strict", 0, NULL, RT_TO_FLAG(strict),
+     "Exit code 1 if a claim, an expression of the finding or a verdict on a paper does not hold"},
     {0}};
 const RtSyntax rt_report_syntax = {
     .options = report_options,
