@@ -98,8 +98,8 @@ static bool is_word(const char *word, size_t length, const char *name) {
 
 static bool is_general(const char *word, size_t length) {
     static const char *const general[] = {"all",        "always",     "best",    "cheapest", "every",
-                                          "everything", "everywhere", "fastest", "least",    "never",
-                                          "none",       "nothing",    "nowhere", "slowest",  "worst"};
+                                          "everything", "everywhere", "fastest", "never",    "none",
+                                          "nothing",    "nowhere",    "slowest", "worst"};
     for (size_t i = 0; i < sizeof general / sizeof general[0]; i++) {
         if (is_word(word, length, general[i])) return true;
     }
