@@ -398,22 +398,22 @@ static bool is_crossover(const RtClaim *claim) {
     return claim->form == RT_CLAIM_CROSSOVER;
 }
 
-/* For a sentence: one figure, or the smallest and the largest; of curves, where they surely cross. */
+/* For a sentence: one figure, or the smallest and the largest; of curves, where they surely cross once. */
 static void put_value(RtClaimResult *result, const RtClaim *claim, const Figure *figures, uint32_t count,
                       const Figure *least, const Figure *most) {
-    const RtCrossover *certain = NULL;
-    for (uint32_t i = 0; i < figures->found && i < RT_MAX_CROSSOVERS && !certain; i++)
-        certain = is_certain(&figures->crossovers[i]) ? &figures->crossovers[i] : NULL;
-    if (is_crossover(claim) && count == 1 && certain) {
-        put_one_crossover(result, claim, figures, certain);
-    } else if (is_crossover(claim)) {
-        PUT(result, "unknown");
+    if (is_crossover(claim)) {
+        const bool certain = count == 1 && figures->found == 1 && is_certain(figures->crossovers);
+        if (certain)
+            put_one_crossover(result, claim, figures, figures->crossovers);
+        else
+            PUT(result, "unknown");
     } else if (count == 1) {
         put_estimate(result, claim, &figures->value);
     } else {
-        put_number(result, claim, claim->format.scale < 0 ? most->value.median : least->value.median);
+        const bool falls = claim->format.scale < 0; /* the larger the value */
+        put_number(result, claim, (falls ? most : least)->value.median);
         PUT(result, " to ");
-        put_number(result, claim, claim->format.scale < 0 ? least->value.median : most->value.median);
+        put_number(result, claim, (falls ? least : most)->value.median);
     }
     put_unit(result, claim);
     rt_append_text(result->value, sizeof result->value, "%s", result->figures);

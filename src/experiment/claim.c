@@ -21,10 +21,6 @@ static const Measure measures[] = {
 static const char objects[] = "objects";
 enum { MEASURES = sizeof measures / sizeof measures[0], MOST_WORDS = 48 };
 
-const char *rt_claim_measure_name(RtClaimMeasure measure) {
-    return measures[measure].name;
-}
-
 const char *rt_claim_measure_unit(RtClaimMeasure measure) {
     return measures[measure].unit;
 }
@@ -506,53 +502,43 @@ static RtStatus read_correlation(Reader *r) {
     return read_places(r, &claim->first);
 }
 
-/* Readouts "fastest" and "least MEASURE"; and "ACCEL is fastest", "ACCEL has least MEASURE", which is a ratio
- * to each other accelerator. */
+/* Whether [ACCEL is] fastest or [ACCEL has] least comes next. */
+static bool begins_least(const Reader *r) {
+    const char *next = r->at < r->count ? r->words[r->at + 1] : "";
+    const bool named = is_accel(r, word(r)) && (strcmp(next, "is") == 0 || strcmp(next, "has") == 0);
+    return named || strcmp(word(r), "fastest") == 0 || strcmp(word(r), "least") == 0;
+}
+
+/* A claim is the ratio to each other accelerator, at most 1; without ACCEL it is a readout. */
 static RtStatus read_least(Reader *r) {
     RtClaim *claim = r->claim;
     RtClaimSide *first = &claim->first;
     const uint32_t accel = r->at;
     claim->form = RT_CLAIM_LEAST;
-    claim->readout = strcmp(word(r), "fastest") == 0 || strcmp(word(r), "least") == 0;
-    if (!claim->readout) r->at++;
-    if (claim->readout ? take(r, "fastest") : take(r, "is")) {
-        if (!claim->readout) RT_TRY(need(r, "fastest"));
-        if (r->experiment->count_only) return fail(r, "this experiment times nothing (count_only)");
-    } else {
-        if (!claim->readout) RT_TRY(need(r, "has"));
-        RT_TRY(need(r, "least"));
-        RT_TRY(read_measure(r, &first->measure));
-        if (!has_accel(first->measure) || first->measure == RT_CLAIM_BREAK_EVEN)
-            return fail(r, "%s does not rank accelerators", measures[first->measure].name);
-    }
+    claim->readout = !is_accel(r, word(r));
     claim->or_equal = true;
     claim->number = 1;
+    r->at += claim->readout ? 0 : 1;
+    const bool fastest = claim->readout ? take(r, "fastest") : take(r, "is");
+    if (!claim->readout) RT_TRY(need(r, fastest ? "fastest" : "has"));
+    if (!fastest) RT_TRY(need(r, "least"));
+    if (!fastest) RT_TRY(read_measure(r, &first->measure));
+    if (fastest && r->experiment->count_only) return fail(r, "this experiment times nothing (count_only)");
+    if (!has_accel(first->measure) || first->measure == RT_CLAIM_BREAK_EVEN)
+        return fail(r, "%s does not rank accelerators", measures[first->measure].name);
     if (!claim->readout) {
         const uint32_t end = r->at;
         r->at = accel;
         RT_TRY(read_accel(r, first, false));
         r->at = end;
-    }
-    for (uint32_t t = 0; !claim->readout && t < r->experiment->workload_count; t++) {
-        uint32_t count = 0;
-        for (uint32_t c = 0; c < r->experiment->candidate_count; c++)
-            count += rt_candidate_runs(r->experiment, c, t) &&
-                     rt_candidate_is_called(&r->experiment->candidates[c], first->accel);
-        if (count > 1)
-            return fail(r, "'%s' names %" PRIu32 " accelerators: name one of them", first->accel, count);
+        claim->second = *first;
+        RT_TRY(check_second(r)); /* one accelerator on each scene */
     }
     return read_places(r, first);
 }
 
 static bool begins_trend(const Reader *r) {
     return strcmp(word(r), "falls") == 0 || strcmp(word(r), "rises") == 0 || strcmp(word(r), "never") == 0;
-}
-
-/* Whether "ACCEL is" or "ACCEL has" comes next, or a readout of the least. */
-static bool begins_least(const Reader *r) {
-    const char *next = r->at < r->count ? r->words[r->at + 1] : "";
-    const bool of = is_accel(r, word(r)) && (strcmp(next, "is") == 0 || strcmp(next, "has") == 0);
-    return of || strcmp(word(r), "fastest") == 0 || strcmp(word(r), "least") == 0;
 }
 
 static RtStatus read_quantity(Reader *r) {

@@ -82,7 +82,6 @@ typedef enum RtClaimMeasure {
 #undef RT_CLAIM_MEASURE
 } RtClaimMeasure;
 
-const char *rt_claim_measure_name(RtClaimMeasure measure);
 const char *rt_claim_measure_unit(RtClaimMeasure measure);
 RtClaimSubject rt_claim_subject(RtClaimMeasure measure);
 
@@ -156,8 +155,7 @@ static inline bool rt_claim_has_two_sides(const RtClaim *claim) {
 /* Whether the claim, or one of a correlation's measures, is of a kind of rays. */
 bool rt_claim_is_of_rays(const RtClaim *claim);
 
-/* Whether the workload, or the candidate on it, has the values that the side's "at" names; whether it has a
- * value for the key at all is `value` of rt_swept_of. */
+/* Whether candidate `c` on workload `t` is where the side is: on its scene, with all values of its "at". */
 bool rt_claim_side_has(const RtExperiment *experiment, const RtClaimSide *side, uint32_t t, uint32_t c);
 
 /* A cell: what is measured of a candidate on a workload. */
@@ -166,8 +164,8 @@ typedef struct RtClaimCell {
     RtRayKind kind; /* or RT_ALL_RAYS */
 } RtClaimCell;
 
-/* Finds the second side's cell for a cell of the first. Returns how many there could be, each measured
- * anywhere; *cell gets the first of them. */
+/* Finds the second side's cell for a cell of the first. Returns how many there could be, missing accelerators
+ * included; *cell gets the first of them. */
 uint32_t rt_claim_partner(const RtExperiment *experiment, const RtClaim *claim, const RtClaimCell *of,
                           RtClaimCell *cell);
 

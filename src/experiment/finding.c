@@ -106,16 +106,11 @@ static bool is_general(const char *word, size_t length) {
     return false;
 }
 
-static bool has_digit(const char *word, size_t length) {
-    for (size_t i = 0; i < length; i++) {
-        if (isdigit((unsigned char)word[i])) return true;
-    }
-    return false;
-}
-
 /* A figure: not a name (AVX-512), but a power of n is one. */
 static bool is_number(const char *word, size_t length) {
-    return has_digit(word, length) && (!isalpha((unsigned char)*word) || memchr(word, '^', length));
+    bool digit = false;
+    for (size_t i = 0; i < length; i++) digit |= isdigit((unsigned char)word[i]) != 0;
+    return digit && (!isalpha((unsigned char)*word) || memchr(word, '^', length));
 }
 
 static bool is_year(const char *text, const char *word, size_t length) {
