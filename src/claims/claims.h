@@ -31,6 +31,7 @@
 #define RT_CLAIMS_CLAIMS_H
 
 #include "experiment/claim.h"
+#include "experiment/finding.h"
 #include "results/results.h"
 
 typedef enum RtClaimVerdict {
@@ -43,11 +44,14 @@ typedef enum RtClaimVerdict {
 } RtClaimVerdict;
 
 #define RT_MAX_CLAIM_FIGURES 512
+#define RT_MAX_CLAIM_VALUE   160
 typedef struct RtClaimResult {
     RtClaimVerdict verdict;
     /* With intervals: the deciding figure, or the one nearest to deciding; of a readout all, or the smallest
      * and the largest of many. */
     char figures[RT_MAX_CLAIM_FIGURES];
+    char value[RT_MAX_CLAIM_VALUE]; /* of a readout, for a sentence: "1.43 [1.40, 1.47]", "0.30 to 0.89" */
+    bool measured, whole;           /* any, or all values of its cells are known */
 } RtClaimResult;
 
 /* "holds", "does not hold", "undecided", "no measurements", "figure". */
@@ -57,7 +61,12 @@ const char *rt_claim_verdict_name(RtClaimVerdict verdict);
  * all cases; *count gets the number of them. */
 double rt_claims_coverage(const RtResults *results, uint32_t *count);
 
-/* Judges claim number `i` of the experiment; an invalid one has no measurements. */
+/* Judges a claim. `other`: it is none of this experiment's, and counts as one more of them in the coverage.
+ * RT_BAD_INPUT if it is none; then it has no measurements. */
+RtStatus rt_claim_judge_text(const RtResults *results, const char *text, bool other, RtClaimResult *result,
+                             RtError *error);
+
+/* The same of claim number `i` of the experiment; an invalid one has no measurements. */
 void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result);
 
 /* RT_MISMATCH with the number of claims that do not hold, if there are any. */
@@ -69,8 +78,5 @@ void rt_claims_level(const RtResults *results, char out[RT_MAX_CLAIM_LEVEL]);
 
 /* Prints all claims with their verdicts, and which of them changed after the run. */
 void rt_claims_print(const RtResults *results, FILE *out);
-
-/* What a run ends with: its outcome, claims and null runs (results/result_tables.h). */
-void rt_print_summary(const RtResults *results, FILE *out);
 
 #endif
