@@ -52,6 +52,7 @@ typedef struct RtClaimResult {
     char figures[RT_MAX_CLAIM_FIGURES];
     char value[RT_MAX_CLAIM_VALUE]; /* of a readout, for a sentence: "1.43 [1.40, 1.47]", "0.30 to 0.89" */
     bool measured, whole;           /* any, or all values of its cells are known */
+    bool contrary;                  /* "percent less" or "more" of what may be the other way round */
 } RtClaimResult;
 
 /* "holds", "does not hold", "undecided", "no measurements", "figure". */
@@ -75,6 +76,9 @@ RtStatus rt_claims_check(const RtResults *results, RtError *error);
 /* A sentence on the intervals of many claims; "" without any. */
 #define RT_MAX_CLAIM_LEVEL 160
 void rt_claims_level(const RtResults *results, char out[RT_MAX_CLAIM_LEVEL]);
+
+/* A heading's remark on claims and findings of a --quick variant; else "". */
+const char *rt_claims_variant(const RtExperiment *experiment);
 
 /* Prints all claims with their verdicts, and which of them changed after the run. */
 void rt_claims_print(const RtResults *results, FILE *out);

@@ -218,7 +218,8 @@ static uint32_t add_points(const RtClaimCase *of, const RtClaimCell *cell, RtCla
     for (uint32_t c = 0; c < (ranks ? experiment->candidate_count : 1); c++) {
         if (ranks) point.other.candidate = c;
         if (ranks && (c == cell->candidate || !is_ranked(of, cell->workload, c))) continue;
-        if (rt_claim_has_two_sides(claim)) point.found = find_other(experiment, claim, cell, &point.other);
+        if (points && rt_claim_has_two_sides(claim))
+            point.found = find_other(experiment, claim, cell, &point.other);
         if (points) set_values(of, &point);
         if (points) points[count] = point;
         count++;

@@ -76,6 +76,8 @@ static void fill_segment(const RtResults *results, const RtFindingPiece *piece, 
         set_mark(segment, RT_FINDING_MISSING, "no measurements");
     else if (readout && !result.whole)
         set_mark(segment, RT_FINDING_BROKEN, "some values are unknown");
+    else if (readout && result.contrary)
+        set_mark(segment, RT_FINDING_BROKEN, "the interval includes the contrary");
     else if (readout ? strcmp(result.value, "unknown") == 0 : result.verdict != RT_CLAIM_HOLDS)
         set_mark(segment, RT_FINDING_BROKEN, readout ? "" : rt_claim_verdict_name(result.verdict));
     else
@@ -167,7 +169,7 @@ void rt_findings_print(const RtResults *results, const char *directory, FILE *ou
     if (rt_finding_fill(results, directory, &finding, NULL) != RT_OK) return;
     char *text = rt_finding_text(&finding);
     if (text && *text) {
-        fputs("\nFinding:\n", out);
+        fprintf(out, "\nFinding%s:\n", rt_claims_variant(results->experiment));
         rt_print_wrapped(text, out);
     }
     print_broken(results, &finding, out);
