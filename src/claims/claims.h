@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The verdicts on claims (experiment/claim.h).
+/* The verdicts on claims (experiment/claim.h), those of lists and those of findings.
  *
  * Times have intervals, counts are exact. A claim about times holds if it holds for all values within the
  * intervals, does not hold if it holds for none, and is undecided otherwise. It is undecided, too, with fewer
  * than RT_CLAIM_RAYS rays. Ratios of times, and the steps of a trend of times on one scene, are paired
- * (results/results.h). With many cells some interval misses by chance; so all intervals of tracing times in
- * an experiment's claims hold together in 95 % of all cases (rt_coverage_of_each, counting the cells of all
- * claims). Readouts claim nothing and have 95 % each; so have times of builds and frames, whose single
- * measurements are not kept. The time of a single build has no interval and is taken as exact. A break-even
- * is the number of rays from which on an accelerator is ahead of the baseline, its build included; it is
- * infinite if there is none.
+ * (results/results.h); one of cells in different places has the quotient of both estimates, and rests on two
+ * intervals. With many intervals some miss by chance; so all those of tracing times in an experiment's claims
+ * hold together in 95 % of all cases (rt_coverage_of_each, counting the cells of all claims). Readouts claim
+ * nothing and have 95 % each; so have times of builds and rendered frames, whose single measurements are not
+ * kept. The time of a single build has no interval and is taken as exact. A break-even is the number of rays
+ * from which on an accelerator is ahead of the baseline, its build included; it is infinite if there is none.
+ *
+ * That an accelerator is fastest is judged against each other one, and counts as so many intervals. A claim
+ * about a mean or a correlation rests on those of its cells.
  *
  * An exponent is the least-squares slope of the logarithms, a correlation Pearson's of the logarithms.
  * claims_points.h defines their intervals. They include the scatter of the values, also of counts: a curve
