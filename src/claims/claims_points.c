@@ -143,11 +143,11 @@ static bool lacks(const RtResults *results, RtClaimMeasure measure, uint32_t t, 
     return measure > RT_CLAIM_TIME && measure < RT_CLAIM_FRAME_TIME && !build->counts;
 }
 
-/* Whether `is fastest` and the like compare candidate `c` on workload `t`. Not with the yardstick, nor with
- * single settings of a baseline of several. */
+/* Whether `is fastest` and the like compare candidate `c` on workload `t`. Not with one that refused it, the
+ * yardstick, or single settings of a baseline of several. */
 static bool is_ranked(const RtClaimCase *of, uint32_t t, uint32_t c) {
     const RtExperiment *experiment = of->results->experiment;
-    return rt_candidate_runs(experiment, c, t) &&
+    return rt_candidate_runs(experiment, c, t) && !rt_build_at(of->results, t, c)->refused &&
            strcmp(experiment->candidates[c].spec, rt_accel_yardstick()) != 0 &&
            !(*experiment->best && rt_candidate_is_baseline(experiment, c)) &&
            !lacks(of->results, of->claim->first.measure, t, c);

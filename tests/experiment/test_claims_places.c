@@ -51,6 +51,16 @@ RT_TEST(an_accelerator_is_fastest_if_no_other_is_better_in_any_cell) {
     is_false("bvh has least object_tests", "1.05 (bvh to grid:density=4 on random:n=10");
 }
 
+RT_TEST(an_accelerator_that_refuses_the_scene_is_not_compared_and_one_that_was_left_out_is) {
+    set_all();
+    for (uint32_t k = 0; k < 2; k++)
+        *rt_cell_at(&results, 0, 2, (RtRayKind)k) = (RtCell){.left_out = "too slow"};
+    is_undecided("bvh is fastest on random:n=10", "2 of 6 values are unknown");
+    rt_build_at(&results, 0, 2)->refused = true;
+    holds("bvh is fastest on random:n=10", "");
+    rt_build_at(&results, 0, 2)->refused = false;
+}
+
 RT_TEST(the_yardstick_is_not_compared) {
     RtCandidate ideal = {.spec = "ideal", .ray_stride = 1};
     rt_results_clear(&results);
