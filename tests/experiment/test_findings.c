@@ -122,6 +122,7 @@ RT_TEST(numbers_and_general_words_stand_in_braces) {
         {"It takes 1.4 times as long.", "'1.4' stands outside braces: write the figure as an expression"},
         {"It grows as n^0.87.", "'n^0.87'"},
         {"a (43 %)", "'43'"},
+        {"a ({time of bvh}), and 5", "'5'"},
         {"in 1988", "'1988'"},
         {"It is always so.", "'always' stands outside braces: write {WORDS: CLAIM}"},
         {"Nothing, and \"Everywhere\"", "'Nothing'"},
