@@ -415,6 +415,9 @@ static void put_value(RtClaimResult *result, const RtClaim *claim, const Figure 
         PUT(result, " to ");
         put_number(result, claim, (falls ? least : most)->value.median);
     }
+    for (uint32_t i = 0; i < count && claim->format.offset != 0; i++)
+        result->contrary |=
+            in_units(claim, claim->format.scale < 0 ? figures[i].value.high : figures[i].value.low) < 0;
     put_unit(result, claim);
     rt_append_text(result->value, sizeof result->value, "%s", result->figures);
     result->figures[0] = '\0';
@@ -603,6 +606,10 @@ void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result)
 
 /* ---- all claims ---- */
 
+const char *rt_claims_variant(const RtExperiment *experiment) {
+    return experiment->quick ? " (made for the full experiment; this is its --quick variant)" : "";
+}
+
 RtStatus rt_claims_check(const RtResults *results, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     uint32_t wrong = 0, first = 0, claims = 0;
@@ -634,9 +641,7 @@ void rt_claims_print(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     char level[RT_MAX_CLAIM_LEVEL];
     bool open = false;
-    if (experiment->claim_count)
-        fprintf(out, "\nClaims%s:\n",
-                experiment->quick ? " (made for the full experiment; this is its --quick variant)" : "");
+    if (experiment->claim_count) fprintf(out, "\nClaims%s:\n", rt_claims_variant(experiment));
     for (uint32_t i = 0; i < experiment->claim_count; i++) {
         RtClaimResult result;
         rt_claim_judge(results, i, &result);

@@ -138,14 +138,14 @@ static bool lacks(const RtResults *results, RtClaimMeasure measure, uint32_t t, 
     return measure > RT_CLAIM_TIME && measure < RT_CLAIM_FRAME_TIME && !build->counts;
 }
 
-/* Whether `is fastest` and the like compare candidate `c` on workload `t`. Not with the yardstick, members
- * that only a best-of tries, and best-ofs in what structures have. */
+/* Whether `is fastest` and the like compare candidate `c` on workload `t`. Not with one that refused it, the
+ * yardstick, members that only a best-of tries, and best-ofs in what structures have. */
 static bool is_ranked(const RtClaimCase *of, uint32_t t, uint32_t c) {
     const RtExperiment *experiment = of->results->experiment;
     const RtCandidate *candidate = &experiment->candidates[c];
     const RtClaimMeasure measure = of->claim->first.measure;
-    return rt_candidate_runs(experiment, c, t) && strcmp(candidate->spec, rt_accel_yardstick()) != 0 &&
-           !candidate->tried &&
+    return rt_candidate_runs(experiment, c, t) && !rt_results_refused(of->results, t, c) &&
+           strcmp(candidate->spec, rt_accel_yardstick()) != 0 && !candidate->tried &&
            !(candidate->member_count > 0 && rt_claim_subject(measure) == RT_SUBJECT_STRUCTURE) &&
            !lacks(of->results, measure, t, c);
 }
@@ -225,7 +225,8 @@ static uint32_t add_points(const RtClaimCase *of, const RtClaimCell *cell, RtCla
     for (uint32_t c = 0; c < (ranks ? experiment->candidate_count : 1); c++) {
         if (ranks) point.other.candidate = c;
         if (ranks && (same_cell(of, cell, c) || !is_ranked(of, cell->workload, c))) continue;
-        if (rt_claim_has_two_sides(claim)) point.found = find_other(experiment, claim, cell, &point.other);
+        if (points && rt_claim_has_two_sides(claim))
+            point.found = find_other(experiment, claim, cell, &point.other);
         if (points) set_values(of, &point);
         if (points) points[count] = point;
         count++;

@@ -52,11 +52,6 @@ static RtStatus judge(const RtResults *results, const RtFindingPiece *piece, Oth
     return rt_claim_judge_text(of, piece->expression, elsewhere, result, error);
 }
 
-static void set_mark(RtFindingSegment *segment, RtFindingMark mark, const char *said) {
-    segment->mark = mark;
-    segment->said = said;
-}
-
 static void fill_segment(const RtResults *results, const RtFindingPiece *piece, Other *other,
                          RtFindingSegment *segment) {
     RtClaimResult result;
@@ -66,20 +61,24 @@ static void fill_segment(const RtResults *results, const RtFindingPiece *piece, 
     if (piece->sort < RT_FINDING_READOUT) return;
     const bool readout = piece->sort == RT_FINDING_READOUT;
     if (judge(results, piece, other, &result, &why) != RT_OK) {
+        segment->mark = RT_FINDING_BROKEN;
+        segment->said = "no results";
         rt_append_text(segment->text, RT_MAX_TEXT, "%s", readout ? "unknown" : "");
-        set_mark(segment, RT_FINDING_BROKEN, "no results");
         rt_append_text(segment->note, sizeof segment->note, "%s: %s", piece->expression, why.message);
         return;
     }
+    const bool open = readout ? strcmp(result.value, "unknown") == 0 : result.verdict != RT_CLAIM_HOLDS;
+    segment->said = !result.measured             ? "no measurements"
+                    : readout && !result.whole   ? "some values are unknown"
+                    : readout && result.contrary ? "the interval includes the contrary"
+                    : open && readout            ? "undecided"
+                    : open                       ? rt_claim_verdict_name(result.verdict)
+                                                 : "";
+    segment->mark = !result.measured ? RT_FINDING_MISSING
+                    : *segment->said ? RT_FINDING_BROKEN
+                    : readout        ? RT_FINDING_FIGURE
+                                     : RT_FINDING_UPHELD;
     rt_append_text(segment->text, RT_MAX_TEXT, "%s", readout ? result.value : "");
-    if (!result.measured)
-        set_mark(segment, RT_FINDING_MISSING, "no measurements");
-    else if (readout && !result.whole)
-        set_mark(segment, RT_FINDING_BROKEN, "some values are unknown");
-    else if (readout ? strcmp(result.value, "unknown") == 0 : result.verdict != RT_CLAIM_HOLDS)
-        set_mark(segment, RT_FINDING_BROKEN, readout ? "" : rt_claim_verdict_name(result.verdict));
-    else
-        set_mark(segment, readout ? RT_FINDING_FIGURE : RT_FINDING_UPHELD, "");
     rt_append_text(segment->note, sizeof segment->note, "%s%s%s: %s, %s", piece->from,
                    *piece->from ? ": " : "", piece->expression, rt_claim_verdict_name(result.verdict),
                    result.figures);
@@ -167,7 +166,7 @@ void rt_findings_print(const RtResults *results, const char *directory, FILE *ou
     if (rt_finding_fill(results, directory, &finding, NULL) != RT_OK) return;
     char *text = rt_finding_text(&finding);
     if (text && *text) {
-        fputs("\nFinding:\n", out);
+        fprintf(out, "\nFinding%s:\n", rt_claims_variant(results->experiment));
         rt_print_wrapped(text, out);
     }
     print_broken(results, &finding, out);

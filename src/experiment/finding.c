@@ -81,12 +81,13 @@ bool rt_finding_next(const char **at, RtFindingPiece *piece, RtError *error) {
 
 /* Takes the next word from *at, before `end`, without punctuation around it. */
 static bool next_word(const char **at, const char *end, const char **word, size_t *length) {
+    static const char punctuation[] = " \"'`()[]*,.;:!?";
     const char *from = *at;
-    while (from < end && strchr(" \"'`([*,.;:!?", *from)) from++;
+    while (from < end && strchr(punctuation, *from)) from++;
     const char *to = from;
     while (to < end && *to != ' ') to++;
     *at = to;
-    while (to > from && strchr("\"'`)]*,.;:!?", to[-1])) to--;
+    while (to > from && strchr(punctuation, to[-1])) to--;
     *word = from;
     *length = (size_t)(to - from);
     return *length > 0;

@@ -51,6 +51,16 @@ RT_TEST(an_accelerator_is_fastest_if_no_other_is_better_in_any_cell) {
     is_false("bvh has least object_tests", "1.05 (bvh to grid:density=4 on random:n=10");
 }
 
+RT_TEST(an_accelerator_that_refuses_the_scene_is_not_compared_and_one_that_was_left_out_is) {
+    set_all();
+    for (uint32_t k = 0; k < 2; k++)
+        *rt_cell_at(&results, 0, 2, (RtRayKind)k) = (RtCell){.left_out = "too slow"};
+    is_undecided("bvh is fastest on random:n=10", "2 of 6 values are unknown");
+    rt_build_at(&results, 0, 2)->refused = true;
+    holds("bvh is fastest on random:n=10", "");
+    rt_build_at(&results, 0, 2)->refused = false;
+}
+
 RT_TEST(the_yardstick_is_not_compared) {
     RtCandidate ideal = {.spec = "ideal", .ray_stride = 1};
     rt_results_clear(&results);
@@ -85,6 +95,8 @@ RT_TEST(cells_are_counted_in_which_a_claim_holds) {
     shows("count of time of bvh < 203", "2 of 8, 2 undecided");
     shows("count of bvh is fastest", "2 of 8, 2 undecided");
     shows("count of object_tests of grid falls with density", "8 of 8");
+    set(0, 2, 50, 50, 51); /* one of several rivals is faster */
+    shows("count of bvh is fastest on random:n=10", "0 of 2");
 }
 
 /* 100, 200, 400 and 800 ns: the square root of 200 * 400. */

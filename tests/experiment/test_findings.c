@@ -55,6 +55,16 @@ RT_TEST(words_whose_claim_does_not_hold_or_is_undecided_are_marked) {
     assert_ok(rt_findings_check(&results, "nowhere", error));
 }
 
+RT_TEST(a_figure_of_what_is_less_is_marked_where_it_may_be_more) {
+    set_all();
+    reads("{ratio of object_tests of bvh to grid:density=1 on balls for primary rays as percent less} tests",
+          "77.0 % less tests");
+    reads("{ratio of object_tests of bvh to grid:density=1 on balls for primary rays as percent more}",
+          "-77.0 % more [the interval includes the contrary]");
+    fill("{ratio of time of bvh to grid:density=1 on random:n=100 for primary rays as percent less}");
+    assert_int_equal(filled.broken, 1); /* 200 to 208 ns of 200 to 215 */
+}
+
 RT_TEST(what_was_not_measured_is_said_and_breaks_nothing) {
     set_all();
     for (uint32_t k = 0; k < 2; k++) *rt_cell_at(&results, 3, 0, (RtRayKind)k) = (RtCell){0};
@@ -112,6 +122,7 @@ RT_TEST(numbers_and_general_words_stand_in_braces) {
         {"It takes 1.4 times as long.", "'1.4' stands outside braces: write the figure as an expression"},
         {"It grows as n^0.87.", "'n^0.87'"},
         {"a (43 %)", "'43'"},
+        {"a ({time of bvh}), and 5", "'5'"},
         {"in 1988", "'1988'"},
         {"It is always so.", "'always' stands outside braces: write {WORDS: CLAIM}"},
         {"Nothing, and \"Everywhere\"", "'Nothing'"},

@@ -122,10 +122,11 @@
   if (data.papers.length) {
     const names = ['citation', 'page', 'quote', 'verdict', 'experiment'];
     const quote = (paper) => paper.seen ? `“${paper.quote}”` : `${paper.quote} (in our words: the text was not at hand)`;
-    const verdict = (paper) => [paper.problem ? `${paper.verdict} [not supported: ${paper.problem}]` : paper.verdict, '', paper.modelled];
+    const verdict = (paper) => paper.problem ? `${paper.verdict} [not supported: ${paper.problem}]` : paper.verdict;
+    const modelled = (paper) => paper.modelled && ` Modelled: ${paper.modelled}`;
     put('From the literature', makeTable({ title: 'Sentences that are tested',
       columns: names.map((name) => ({ id: name, name: name === 'quote' ? 'sentence' : name, meaning: '', prose: name !== 'page' })),
-      rows: data.papers.map((paper) => ({ fields: [paper.citation, paper.page, quote(paper), verdict(paper), paper.experiment] })) }));
+      rows: data.papers.map((paper) => ({ fields: [paper.citation, paper.page, quote(paper) + modelled(paper), verdict(paper), paper.experiment] })) }));
   }
   const makeList = (pairs) => make('dl', {}, ...pairs.flatMap(([name, text]) => [make('dt', {}, name), make('dd', {}, String(text))]));
   if (data.manifest) {
