@@ -363,7 +363,7 @@ void rt_print_outcome(const RtResults *results, FILE *out) {
     else
         rt_print_results(results, RT_TOTALS, out);
     for (uint32_t t = 0; frames && t < experiment->workload_count; t++)
-        print_text(rt_frame_sentence(results, t), out);
+        print_text(rt_choices_sentences(results, t), out);
     if (frames) print_text(rt_learnt_sentence(results), out);
     for (uint32_t t = 0; experiment->render && t < experiment->workload_count; t++) {
         if (!results->workloads[t].known) continue;

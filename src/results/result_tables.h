@@ -148,17 +148,12 @@ typedef struct RtFrameRow {
  * workload. The winner is marked as the best. */
 RtTable rt_frame_table(RtFrameRow *row);
 
-/* Which accelerator of the group is the fastest on a workload, by how much, and how the others and the
- * overlays compare; those whose intervals overlap are level: sentences, for rt_free(). "" if
- * unknown, NULL if memory is short. */
-char *rt_frame_sentence(const RtResults *results, uint32_t workload);
-
 /* The size of a workload's frame, its rays by kind, and how many were measured: "a frame of 256x256: 65536
  * primary, ... rays; of 326921 rays, 152585 measured". */
 #define RT_MAX_FRAME_TEXT 1024
 void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_TEXT]);
 
-/* Explains the columns of the tables to read, `mark` beside the fastest, and "level". */
+/* Explains the columns of the tables to read, and `mark` beside the fastest. */
 void rt_frame_legend(const RtExperiment *experiment, const char *mark, char out[RT_MAX_FRAME_TEXT]);
 
 /* Prints the tables of all known workloads. */
