@@ -15,7 +15,7 @@ set -euo pipefail
 cd "$work"
 runs=${1:-20}
 most=60 power=0.9
-scenes=(random:n=2000 random:n=300,shape=triangle balls:size=3 tetra:size=4 gears:size=2)
+scenes=(random:n=2000 random:n=300 balls:size=3 tetra:size=4 gears:size=2)
 
 # experiment NAME SEED ROUNDS BASELINE ACCELERATOR...
 experiment() {
@@ -49,6 +49,7 @@ function tail(least, n, p,   i, sum) { # P(Binomial(n, p) >= least)
         sum += exp(log_factorial(n) - log_factorial(i) - log_factorial(n - i) + i * log(p) + (n - i) * log(1 - p))
     return sum
 }
+{ gsub(/"[^"]*"/, "quoted") }
 FNR == 1 { for (i in column) delete column[i]; for (i = 1; i <= NF; i++) column[$i] = i; next }
 '
 
@@ -116,7 +117,7 @@ END {
             found += below < rank_of(n)
             wrong += above < rank_of(n)
         }
-        printf "%s %.0f %% with %d rounds", n > 10 ? "," : "", 100 * found / count, n
+        printf "%s %.0f %% with %d rounds", (n > 10 ? "," : ""), 100 * found / count, n
         if (wrong) printf " (and %d found faster)", wrong
     }
     print ""
