@@ -349,10 +349,13 @@ static json_t *tables_of(const RtResults *results) {
         if (!results->workloads[t].known) continue;
         rt_results_say_part(results, 1u << t, rt_experiment_kinds(experiment), part);
         snprintf(caption, sizeof caption, "all kinds of rays together, %s", part);
+        char *choices = rt_choices_sentences(results, t);
         json_array_append_new(sections,
-                              json_pack("{s:s, s:[o], s:[o]}", "title", experiment->workloads[t].label,
-                                        "tables", table_of(results, t, RT_TOTALS_MORE, caption), "folded",
+                              json_pack("{s:s, s:[o], s:s, s:[o]}", "title", experiment->workloads[t].label,
+                                        "tables", table_of(results, t, RT_TOTALS_MORE, caption), "choices",
+                                        choices ? choices : "", "folded",
                                         table_of(results, t, RT_CELLS_MORE, "By kind of rays")));
+        rt_free(choices);
     }
     json_t *more = json_array();
     if (experiment->distributions)

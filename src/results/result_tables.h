@@ -96,9 +96,12 @@ void rt_print_null_runs(const RtResults *results, FILE *out);
 #define RT_MAX_SENTENCE 640
 void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]);
 
-/* A warning that names the workloads and kinds of rays which some accelerator was timed on so few of,
- * repeated so often, that processors learn them (RT_LEARNT_RAYS), and a remedy: for rt_free(). ""
- * if there are none, NULL if memory is short. */
+/* What each best-of chose on the workload, by kinds of rays: for rt_free(). "" without any, NULL if memory is
+ * short. */
+char *rt_choices_sentences(const RtResults *results, uint32_t workload);
+
+/* A warning that names the workloads and kinds of rays that caches have learnt (rt_cell_is_learnt), and a
+ * remedy; likewise. */
 char *rt_learnt_sentence(const RtResults *results);
 
 /* The least coverage of the intervals: "95 %", or less if rounds are too few. */
