@@ -10,7 +10,7 @@
 set -euo pipefail
 programs=$(dirname "$(realpath "${RT_PROGRAM:-build/release/raytally}")")
 program=$programs/raytally_even slower=$programs/raytally_slower
-work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+work=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d) && trap 'rm -rf "$work"' EXIT
 cd "$work"
 allowed=3
 [ "${1-}" = --clock ] || {

@@ -76,7 +76,7 @@ for kind in ${kinds//,/ }; do
         valgrind --tool=callgrind --dump-instr=yes --separate-callers2=nearest_timed --separate-callers2=nearest_counted \
             --separate-callers2=occluded_timed --separate-callers2=occluded_counted \
             --callgrind-out-file="$work/callgrind" "$program" bench "$scene" --accel "$spec" --rays "$kind" \
-            --size 128x128 --limit 4096 --rounds 1 --threads 1 --json >"$work/json" 2>"$work/log" || {
+            --size 64x64 --limit 2048 --rounds 1 --threads 1 --json >"$work/json" 2>"$work/log" || {
             cat "$work/log"
             exit 1
         }

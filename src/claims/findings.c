@@ -126,7 +126,10 @@ const char *rt_paper_problem(const RtResults *results, const RtPaper *paper) {
     uint32_t holds = 0;
     RtClaimResult result;
     if (paper->verdict == RT_PAPER_UNJUDGED || paper->verdict >= RT_PAPER_NOT_TESTED) return "";
+    if (!rt_paper_is_seen(paper)) return "the paper was not at hand";
     if (paper->claim_count == 0) return "it names no claims that it rests on";
+    if (paper->verdict == RT_PAPER_CONFIRMED && !*paper->modelled)
+        return "it does not say how the paper's configuration is modelled";
     for (uint32_t i = 0; i < paper->claim_count; i++) {
         rt_claim_judge(results, paper->first_claim + i, &result);
         holds += result.verdict == RT_CLAIM_HOLDS || result.verdict == RT_CLAIM_FIGURE;

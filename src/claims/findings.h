@@ -36,7 +36,8 @@ void rt_finding_clear(RtFinding *finding);
  * memory is short. */
 char *rt_finding_text(const RtFinding *finding);
 
-/* What keeps a paper's verdict from being supported by its claims; "" if nothing does. */
+/* What keeps a paper's verdict from being supported, by its claims or what it says of the paper; "" if
+ * nothing does. */
 const char *rt_paper_problem(const RtResults *results, const RtPaper *paper);
 
 /* Prints the finding, which of its expressions do not hold, and verdicts on papers that are not supported. */

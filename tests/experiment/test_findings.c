@@ -147,7 +147,13 @@ RT_TEST(a_verdict_on_a_paper_rests_on_its_claims) {
     strcpy(e->claims[1], "time of bvh < 1");
     e->claim_count = 2;
     paper->claim_count = 1;
+    assert_string_equal(rt_paper_problem(&results, paper),
+                        "it does not say how the paper's configuration is modelled");
+    strcpy(paper->modelled, "by bvh");
     assert_string_equal(rt_paper_problem(&results, paper), "");
+    strcpy(paper->page, "unseen");
+    assert_string_equal(rt_paper_problem(&results, paper), "the paper was not at hand");
+    strcpy(paper->page, "1");
     paper->verdict = RT_PAPER_IN_PART;
     assert_string_equal(rt_paper_problem(&results, paper), "all of its claims hold");
     paper->claim_count = 2;

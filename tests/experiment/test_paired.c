@@ -102,4 +102,68 @@ RT_TEST(with_many_intervals_each_covers_more) {
         strstr(list, "The 17 intervals of tracing times in these claims hold together with 95 % confidence"));
 }
 
+/* ---- what tables find (tests/differences.sh measures the same) ---- */
+
+enum { COPIES = 20, SCENES = 5, SEEDS = 40, MANY = 60 };
+
+/* The time of a structure in a round: noise of up to 5 %, one time in ten three times as much, and slower. */
+static double draw_ns(RtRandom *random) {
+    const double noise = rt_random_betweend(random, 0, 0.05);
+    return 100 * (1 + (rt_random_below(random, 10) == 0 ? 3 * noise : noise));
+}
+
+/* Gives candidates 0 (the baseline) and 1 times, `factor` times as long for the second. */
+static RtEstimate draw_ratio(RtRandom *random, uint32_t rounds, double factor) {
+    double drift = 1;
+    for (uint32_t c = 0; c < 2; c++) {
+        RtCell *cell = rt_cell_at(&results, 0, c, RT_RAY_PRIMARY);
+        rt_free(cell->round_times);
+        *cell = (RtCell){.counted = true, .timed = true, .rounds = rounds, .tally = {.rays = 1000}};
+        assert_ok(rt_cell_make_round_times(cell, error));
+    }
+    RtCell *base = rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY),
+           *other = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
+    for (uint32_t r = 0; r < rounds; r++) {
+        drift *= rt_random_betweend(random, 0.97, 1.05); /* of the machine */
+        const double ns = 1e-9 * drift * draw_ns(random);
+        rt_cell_round_times(base, RT_ROUND_SECONDS)[r] = rt_cell_round_times(base, RT_ROUND_BASELINE)[r] = ns;
+        rt_cell_round_times(other, RT_ROUND_BASELINE)[r] = ns;
+        rt_cell_round_times(other, RT_ROUND_SECONDS)[r] = 1e-9 * factor * drift * draw_ns(random);
+    }
+    return rt_results_time_ratio(&results, 0, 1, 0, RT_RAY_PRIMARY, 0.95);
+}
+
+/* Twenty copies are ten pairs, whose draws are independent: the false differences are binomial. Neither so
+ * many nor so few may have a chance below 1 %: intervals that are too wide are wrong, too. */
+RT_TEST(copies_of_one_structure_differ_as_often_as_the_coverage_of_the_interval_says) {
+    const uint32_t pairs = COPIES / 2 * SCENES * SEEDS, rounds[] = {6, 10, 30};
+    for (int i = 0; i < 3; i++) {
+        const double stated = 1 - rt_interval_coverage(rounds[i]);
+        uint32_t differ = 0;
+        for (uint64_t pair = 0; pair < pairs; pair++) {
+            RtRandom random = rt_random(17, pair);
+            const RtEstimate ratio = draw_ratio(&random, rounds[i], 1);
+            differ += !rt_estimate_holds(&ratio, 1);
+        }
+        if (rt_binomial_tail(differ, pairs, stated) < 0.01 ||
+            1 - rt_binomial_tail(differ + 1, pairs, stated) < 0.01)
+            fail_msg("%u of %u pairs differ with %u rounds; %.4f are stated", differ, pairs, rounds[i],
+                     stated);
+    }
+}
+
+/* As a structure is that traces every 33rd ray twice. */
+RT_TEST(three_percent_are_found_with_sixty_rounds_in_nine_of_ten_cells_and_never_as_faster) {
+    uint32_t found = 0, wrong = 0, few = 0;
+    for (uint64_t seed = 0; seed < 1000; seed++) {
+        RtRandom random = rt_random(18, seed);
+        const RtEstimate many = draw_ratio(&random, MANY, 1 + 1 / 33.0);
+        found += many.low > 1;
+        wrong += many.high < 1;
+        few += draw_ratio(&random, 10, 1 + 1 / 33.0).low > 1;
+    }
+    if (found < 900 || wrong > 0 || few > 700)
+        fail_msg("found in %u of 1000, %u of them with 10 rounds; wrong: %u", found, few, wrong);
+}
+
 RT_TESTS(paired, set_up, tear_down)

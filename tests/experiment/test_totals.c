@@ -4,7 +4,7 @@
 
 static const char small_experiment[] =
     "name: small\nquestion: What does a frame cost?\nprediction: The same whatever is measured of it.\n"
-    "scenes: [{scene: \"gears:size=2\", size: 64x64, depth: 3}]\n"
+    "scenes: [{scene: \"gears:size=1\", size: 64x64, depth: 3}]\n"
     "accelerators: [{accel: brute, group: all}, {accel: grid, group: all}, "
     "{accel: bvh, group: all}]\n"
     "count_only: yes\ncoherent_run: 1\nframe: {without: brute, among: all}\nlimit: 100000\n"
@@ -66,7 +66,7 @@ static void put_set(FILE *out, const char *whole, RtRayKind kind) {
 static void write_journal(const Place *place, const char *whole) {
     FILE *out = fopen(path_in(place, "out/cells.jsonl").text, "a");
     assert_non_null(out);
-    fputs("{\"scene\":\"gears:size=2\",\"workload\":{\"objects\":9,\"width\":64,\"height\":64,"
+    fputs("{\"scene\":\"gears:size=1\",\"workload\":{\"objects\":9,\"width\":64,\"height\":64,"
           "\"hash\":\"0000000000000001\",\"sets\":{",
           out);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) put_set(out, whole, (RtRayKind)k);
@@ -75,7 +75,7 @@ static void write_journal(const Place *place, const char *whole) {
 #define ZERO(name, meaning) "\"" #name "\":0,"
         fprintf(
             out,
-            "{\"scene\":\"gears:size=2\",\"accel\":\"bvh\",\"kind\":\"%s\",\"counted\":{" RT_TALLY_COUNTERS(
+            "{\"scene\":\"gears:size=1\",\"accel\":\"bvh\",\"kind\":\"%s\",\"counted\":{" RT_TALLY_COUNTERS(
                 ZERO) "\"differ\":0,\"rays\":%d,\"object_tests\":%d}}\n",
             rt_ray_kind_name(sets[i].kind), (int)sets[i].rays, (int)sets[i].tests);
 #undef ZERO
@@ -122,7 +122,7 @@ PLACE_TEST(whole_sets_are_in_the_manifest_and_in_the_names_for_plots_but_not_in_
     assert_in_file(place, "out/manifest.json", "\"whole_rays\": 4096");
     assert_not_in_file(place, "out/counts.csv", "whole");
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
-    assert_in_file(place, "sets", "gears:size=2/primary=4096 ");
+    assert_in_file(place, "sets", "gears:size=1/primary=4096 ");
 }
 
 RT_TESTS(totals, NULL, NULL)
