@@ -559,9 +559,12 @@ static void judge_parsed(const RtClaimCase *judge, RtClaimPoint *points, RtClaim
     if (!measured) {
         *result = no_figure(RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured");
     } else if (known == 0) {
-        *result = rt_claim_subject(claim->first.measure) == RT_SUBJECT_STRUCTURE
-                      ? no_figure(RT_CLAIM_UNDECIDED, "these structures have no such value")
-                      : no_figure(RT_CLAIM_UNDECIDED, "no measurements of all kinds of rays");
+        const RtClaimMeasure measure = claim->first.measure;
+        *result = no_figure(RT_CLAIM_UNDECIDED, measure == RT_CLAIM_BREAK_EVEN
+                                                    ? "the baseline, or builds on other threads than the rays"
+                                                : rt_claim_subject(measure) == RT_SUBJECT_STRUCTURE
+                                                    ? "these structures have no such value"
+                                                    : "no measurements of all kinds of rays");
     } else {
         /* An exponent needs all values; a crossover those between its ends. */
         const bool whole = claim->form == RT_CLAIM_EXPONENT || is_crossover(claim);

@@ -468,9 +468,10 @@ uint32_t rt_experiment_swept(const RtExperiment *experiment, RtSweptKey keys[RT_
 
 const char *rt_swept_of(const RtExperiment *experiment, const RtSweptKey *key, uint32_t workload,
                         uint32_t candidate) {
-    const RtSwept *swept = key->scene
-                               ? &experiment->workloads[workload].swept
-                               : &experiment->candidates[rt_candidate_built(experiment, candidate)].swept;
+    /* The null run is the baseline; members of a best-of are not swept. */
+    const uint32_t c = candidate < experiment->candidate_count ? candidate : experiment->baseline;
+    const RtSwept *swept =
+        key->scene ? &experiment->workloads[workload].swept : &experiment->candidates[c].swept;
     for (uint32_t i = 0; i < swept->count; i++) {
         if (strcmp(swept->keys[i], key->key) == 0) return swept->values[i];
     }
