@@ -157,14 +157,20 @@ typedef struct RtBuild {
     "margin", RT_FLOAT("0", 0, 1, "0.01|1"), "fraction by which " what " is wider than the scene's box",     \
         "0: tight; published scene boxes are slightly wider"
 
-/* A name for the fastest of several settings of an accelerator, `embree:best`: a baseline that takes the
- * fastest setting for each ray set. It cannot be built itself. */
+/* A name for the fastest of several settings of an accelerator, `octree:best`: an experiment chooses one for
+ * each scene and kind of rays (experiment/experiment.h). It cannot be built itself. */
 typedef struct RtBestOf {
     const char *name;
-    const char
-        *settings; /* "isa=avx2|avx512,query=1|8": all combinations; other parameters have their defaults */
+    /* "max_leaf_size=1|4|16,depth=8|16": all combinations, at most RT_MAX_BEST; the first is the default.
+     * Other parameters have their defaults. */
+    const char *settings;
     const char *meaning; /* one line */
 } RtBestOf;
+
+/* In the table of an accelerator: NAME:best stands for these settings. */
+#define RT_BEST(settings)                                                                                    \
+    .bests = (const RtBestOf[]){{"best", settings, "its fastest setting for each scene and ray kind"}},      \
+    .best_count = 1
 
 #define RT_ALL_RAY_KINDS ((1u << RT_RAY_KIND_COUNT) - 1)
 
@@ -301,11 +307,12 @@ void rt_spec_format(const RtSpec *spec, char *out);
 
 #define RT_MAX_BEST 32
 
-/* Whether `text` has the form of an RtBestOf, NAME:WORD, which no spec has. */
+/* Whether `text` has a layer of the form of an RtBestOf, NAME:WORD, which no spec has. */
 bool rt_best_is(const char *text);
 
-/* Expands `text` ("embree:best") to specs: specs[0..*count) are available here, specs[*count..*all) on other
- * machines. RT_BAD_INPUT if there is no such name, RT_NOT_AVAILABLE if no spec is available. */
+/* Expands `text` ("octree:best", "light:best+wide") to specs: specs[0..*count) are available here,
+ * specs[*count..*all) on other machines. RT_BAD_INPUT if there is no such name, RT_NOT_AVAILABLE if no spec
+ * is available. */
 RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS], size_t *count,
                        size_t *all, RtError *error);
 

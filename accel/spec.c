@@ -42,10 +42,11 @@ static RtStatus parse_layer(const char *text, size_t chars, RtSpecLayer *layer, 
     if (params) *params++ = '\0';
     RT_TRY(rt_accel_find(copy, &layer->ops, error));
     if (params && find_best(layer->ops, params))
-        return rt_fail(error, RT_BAD_INPUT,
-                       "'%s:%s' is the fastest of several settings: it can only be a baseline, as in "
-                       "`raytally bench --baseline %s:%s`",
-                       copy, params, copy, params);
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "'%s:%s' is the fastest of several settings, which measuring chooses: `raytally bench` "
+            "and experiments take it",
+            copy, params);
     snprintf(what, sizeof what, "accelerator %s", layer->ops->name);
     return rt_params_parse(layer->ops->params, layer->ops->param_count, params, what, layer->values, error);
 }
@@ -145,23 +146,34 @@ RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threa
 
 /* ---- the best of several ---- */
 
-bool rt_best_is(const char *text) {
-    const char *colon = strchr(text, ':');
-    return colon && colon > text && colon[1] && !strpbrk(text, "=,+");
+/* The ':' before a word that is no parameter, as in "octree:best" and "light:best+wide"; NULL if there is
+ * none. */
+static const char *find_word(const char *text) {
+    for (const char *layer = text; *layer;) {
+        const size_t length = layer_length(layer), name = strcspn(layer, ":+");
+        const size_t word = name < length ? strcspn(layer + name + 1, "=,+") : 0;
+        if (name > 0 && word > 0 && name + 1 + word == length) return layer + name;
+        layer += length + (layer[length] == '+');
+    }
+    return NULL;
 }
 
-/* Writes the spec of combination `n` to out[0..RT_MAX_SPEC_CHARS); false if there are no more. */
-static bool combine(const RtAccelOps *ops, const RtBestOf *best, size_t n, char *out) {
-    int used = snprintf(out, RT_MAX_SPEC_CHARS, "%s", ops->name);
+bool rt_best_is(const char *text) {
+    return find_word(text) != NULL;
+}
+
+/* Writes combination `n` of the choices, "max_leaf_size=4,traversal_order=fixed", to
+ * out[0..RT_MAX_SPEC_CHARS); false if there are no more. */
+static bool combine(const RtBestOf *best, size_t n, char *out) {
+    int used = 0;
     for (const char *key = best->settings; *key;) {
         size_t key_chars = strcspn(key, "=") + 1, all = key_chars + strcspn(key + key_chars, ",");
         size_t choices = 1;
         for (size_t i = key_chars; i < all; i++) choices += key[i] == '|';
         const char *choice = key + key_chars;
         for (size_t k = n % choices; k > 0; k--) choice += strcspn(choice, "|") + 1;
-        used += snprintf(out + used, (size_t)(RT_MAX_SPEC_CHARS - used), "%c%.*s%.*s",
-                         key == best->settings ? ':' : ',', (int)key_chars, key, (int)strcspn(choice, "|,"),
-                         choice);
+        used += snprintf(out + used, (size_t)(RT_MAX_SPEC_CHARS - used), "%s%.*s%.*s", used ? "," : "",
+                         (int)key_chars, key, (int)strcspn(choice, "|,"), choice);
         n /= choices;
         key += all + (key[all] == ',');
     }
@@ -182,16 +194,23 @@ static RtStatus fail_unknown(const RtAccelOps *ops, const char *text, RtError *e
 
 RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS], size_t *count,
                        size_t *all, RtError *error) {
-    char name[RT_MAX_NAME];
+    char name[RT_MAX_NAME], word[RT_MAX_NAME], choice[RT_MAX_SPEC_CHARS], spec[RT_MAX_SPEC_CHARS];
     const RtAccelOps *ops;
-    snprintf(name, sizeof name, "%.*s", (int)strcspn(text, ":"), text);
+    const char *colon = find_word(text), *layer = colon ? colon : text;
+    while (layer > text && layer[-1] != '+') layer--;
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(layer, ":+"), layer);
+    snprintf(word, sizeof word, "%.*s", (int)strcspn(colon ? colon + 1 : "", "+"), colon ? colon + 1 : "");
     RT_TRY(rt_accel_find(name, &ops, error));
-    const RtBestOf *best = rt_best_is(text) ? find_best(ops, strchr(text, ':') + 1) : NULL;
+    const RtBestOf *best = find_best(ops, word);
     if (!best) return fail_unknown(ops, text, error);
-    char spec[RT_MAX_SPEC_CHARS];
     *count = *all = 0;
-    while (*all < RT_MAX_BEST && combine(ops, best, *all, spec)) {
+    while (*all < RT_MAX_BEST && combine(best, *all, choice)) {
         RtSpec parsed;
+        const char *rest = colon + 1 + strlen(word);
+        if (snprintf(spec, sizeof spec, "%.*s:%s%s", (int)(colon - text), text, choice, rest) >=
+            (int)sizeof spec)
+            return rt_fail(error, RT_BAD_INPUT, "'%.80s...': a spec has at most %d characters", text,
+                           RT_MAX_SPEC_CHARS - 1);
         RT_TRY(rt_spec_parse(spec, &parsed, error));
         const RtStatus status = rt_spec_available(&parsed, error);
         if (status != RT_OK && status != RT_NOT_AVAILABLE) return status;

@@ -196,6 +196,7 @@ const RtAccelOps rt_clusters_ops = {
         "hierarchy of extents of any kind, built by clustering objects bottom-up, top-down or one by one",
     .paper = "Walter, Bala, Kulkarni & Pingali 2008, Fast Agglomerative Clustering for Rendering, RT'08",
     RT_PARAMS_OF(params),
+    RT_BEST("method=agglomerative|sah,width=2|4,max_leaf_size=1|4"),
     .bytes = sizeof(RtClusters),
     .build = build,
     .kernels = &kernels,

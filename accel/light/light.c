@@ -595,6 +595,7 @@ const RtAccelOps rt_light_ops = {
     .summary = "overlay: a cube of cells around each light, with the objects seen in each cell by depth",
     .paper = "Haines & Greenberg 1986, The Light Buffer: A Shadow-Testing Accelerator, CG&A 6(9)",
     RT_PARAMS_OF(params),
+    RT_BEST("cells=0|256|512|1024"),
     .kinds = 1u << RT_RAY_SHADOW,
     .trial = "light:cells=100", /* a scene of few objects has no cells but those asked for */
     .bytes = sizeof(RtLightBuffer),

@@ -324,6 +324,7 @@ const RtAccelOps rt_wide_ops = {
     .paper = "Wald, Benthin & Boulos 2008, Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using "
              "Multi-branching BVHs, RT'08",
     RT_PARAMS_OF(params),
+    RT_BEST("build=binned|spatial,batch=0.01|1"),
     .trial = "wide:sharing=0", /* scattered rays make no packets where they need not */
     .bytes = sizeof(RtWide),
     .build = build,

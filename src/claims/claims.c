@@ -173,7 +173,7 @@ static void put_place(RtClaimResult *result, const RtExperiment *experiment, con
         if (kind) PUT(result, " (%s rays)", kind_name);
         return;
     }
-    if (line && !claim->key.scene && point->candidate != RT_FASTEST_BASELINE) {
+    if (line && !claim->key.scene) {
         const RtCandidate *candidate = &experiment->candidates[point->candidate];
         PUT(result, " (%s", candidate->stem);
         rt_swept_name(&candidate->swept, claim->key.key, result->figures, RT_MAX_CLAIM_FIGURES);

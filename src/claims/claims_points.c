@@ -52,8 +52,6 @@ static RtEstimate value_at(const RtClaimCase *of, RtClaimMeasure measure, RtRayK
 /* The accelerator that `c` is compared with on workload `t`; false if it is not measured there. */
 static bool find_other(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c,
                        uint32_t *other) {
-    *other = RT_FASTEST_BASELINE;
-    if (strcmp(claim->other, experiment->best) == 0) return true;
     for (*other = 0; *other < experiment->candidate_count; ++*other) {
         if (rt_candidate_runs(experiment, *other, t) && rt_claim_is_other(experiment, claim, t, c, *other))
             return true;
@@ -74,15 +72,14 @@ static RtEstimate ratio_at(const RtClaimCase *of, RtRayKind kind, uint32_t t, ui
 /* ---- the cells of a claim ---- */
 
 static bool is_called(const RtExperiment *experiment, const RtClaim *claim, uint32_t c) {
-    if (c == RT_FASTEST_BASELINE) return strcmp(claim->accel, experiment->best) == 0;
     if (strcmp(claim->accel, RT_CLAIM_ALL) != 0)
         return rt_candidate_is_called(&experiment->candidates[c], claim->accel);
-    return !*experiment->best || !rt_candidate_is_baseline(experiment, c);
+    return !experiment->candidates[c].tried && experiment->candidates[c].entry != UINT32_MAX;
 }
 
 static bool is_about(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c) {
     if (!is_called(experiment, claim, c)) return false;
-    if (c != RT_FASTEST_BASELINE && !rt_candidate_runs(experiment, c, t)) return false;
+    if (!rt_candidate_runs(experiment, c, t)) return false;
     if (*claim->scene && !rt_workload_is_called(&experiment->workloads[t], claim->scene)) return false;
     for (uint32_t p = 0; p < claim->place_count; p++) {
         const char *value = rt_swept_of(experiment, &claim->places[p].key, t, c);
@@ -149,12 +146,10 @@ static bool has_rays(const RtResults *results, uint32_t t, RtRayKind kind) {
 static uint32_t gather_kind(const RtClaimCase *of, RtRayKind kind, RtClaimPoint *points) {
     const RtExperiment *experiment = of->results->experiment;
     const RtClaim *claim = of->claim;
-    const bool one = *experiment->best && strcmp(claim->accel, experiment->best) == 0;
     uint32_t count = 0;
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         if (claim->each_kind && !has_rays(of->results, t, kind)) continue;
-        for (uint32_t i = 0; i < (one ? 1 : experiment->candidate_count); i++) {
-            const uint32_t c = one ? RT_FASTEST_BASELINE : i;
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
             RtClaimPoint point = {.workload = t, .candidate = c, .kind = kind};
             if (!is_about(experiment, claim, t, c) || !abscissa(of, kind, t, c, &point.x)) continue;
             if (points) set_values(of, &point);
@@ -180,8 +175,7 @@ static bool is_measured(const RtResults *results, const RtClaim *claim, RtRayKin
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtRayKind kind = (RtRayKind)k;
         const uint32_t measured = rt_results_candidate(results, t, c, kind);
-        if ((asked == RT_ALL_RAYS || asked == kind) && measured != RT_FASTEST_BASELINE &&
-            rt_cell_at(results, t, measured, kind)->counted)
+        if ((asked == RT_ALL_RAYS || asked == kind) && rt_cell_at(results, t, measured, kind)->counted)
             return true;
     }
     return false;
@@ -209,7 +203,6 @@ static bool same_line(const RtExperiment *experiment, const RtClaim *claim, cons
     char names[2][2 * ROOM];
     const RtClaimPoint *points[] = {a, b};
     if (a->kind != b->kind) return false;
-    if (a->candidate == RT_FASTEST_BASELINE && claim->by_objects) return true;
     for (int i = 0; i < 2; i++) {
         const RtWorkload *workload = &experiment->workloads[points[i]->workload];
         names[i][0] = '\0';
@@ -218,7 +211,6 @@ static bool same_line(const RtExperiment *experiment, const RtClaim *claim, cons
             rt_swept_name(&workload->swept, claim->key.scene ? claim->key.key : NULL, names[i],
                           sizeof names[i]);
         }
-        if (points[i]->candidate == RT_FASTEST_BASELINE) continue;
         const RtCandidate *candidate = &experiment->candidates[points[i]->candidate];
         rt_append_text(names[i], sizeof names[i], " %s", candidate->stem);
         rt_swept_name(&candidate->swept, claim->key.scene ? NULL : claim->key.key, names[i], sizeof names[i]);

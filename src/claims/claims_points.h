@@ -5,7 +5,7 @@
 
 #include "claims/claims.h"
 
-/* A cell. `candidate` may be RT_FASTEST_BASELINE. */
+/* A cell. */
 typedef struct RtClaimPoint {
     uint32_t workload, candidate;
     RtRayKind kind; /* or RT_ALL_RAYS */

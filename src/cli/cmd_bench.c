@@ -27,16 +27,10 @@ typedef struct Options {
 
 /* Adds an accelerator that was not given. */
 static void set_baseline(RtExperiment *experiment, const char *text, struct argp_state *state) {
-    RtError error;
     uint32_t c = 0;
     while (c < experiment->candidate_count && strcmp(experiment->candidates[c].spec, text) != 0) c++;
     experiment->baseline = c;
-    if (c < experiment->candidate_count) return;
-    if (!rt_best_is(text)) {
-        rt_add_accel(experiment, text, state);
-    } else if (rt_experiment_set_baseline(experiment, text, &error) != RT_OK) {
-        argp_error(state, "--baseline: %s", error.message);
-    }
+    if (c == experiment->candidate_count) rt_add_accel(experiment, text, state);
 }
 
 static void check_names(const Options *o, struct argp_state *state) {
@@ -73,7 +67,7 @@ static void finish(void *options, struct argp_state *state) {
     RtExperiment *e = &o->shared.experiment;
     if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
     if (o->baseline) set_baseline(e, o->baseline, state);
-    if (!o->baseline) rt_experiment_set_baseline(e, NULL, NULL);
+    if (!o->baseline) rt_experiment_set_baseline(e, NULL);
     if (o->threads >= 0) o->workload.threads = o->workload.timing = o->threads;
     if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
     rt_experiment_options_finish(&o->shared, state);
@@ -88,8 +82,7 @@ static const RtOption options[] = {
     {"ray-stride", 0, "K", RT_TO_TAKE(take_ray_stride),
      "Measure the preceding --accel on every Kth ray only, for slow accelerators"},
     {"baseline", 0, "SPEC", RT_TO_TEXT(baseline),
-     "The accelerator that ratios are relative to (default: the first that is not a plugin). NAME:best is "
-     "the fastest of several settings for each kind of rays, as in embree:best (`raytally accels NAME`)"},
+     "The accelerator that ratios are relative to (default: the first that is not a plugin)"},
     {"milliseconds", 0, "N", RT_TO_INTEGER(shared.experiment.milliseconds, 0, RT_MAX_MILLISECONDS),
      "Repeat a short set of rays within a round until N milliseconds have passed (20); 0: run it once"},
     {"rounds", 0, "N", RT_TO_INTEGER(shared.experiment.rounds, 1, RT_MAX_ROUNDS),

@@ -59,7 +59,7 @@ static void print_accelerator(const RtAccelOps *ops) {
     print_params(ops->params, ops->param_count);
     for (size_t i = 0; i < ops->best_count; i++) {
         const RtBestOf *best = &ops->bests[i];
-        printf("  as a baseline, %s:%s: %s (%s)\n", ops->name, best->name, best->meaning, best->settings);
+        printf("  %s:%s: %s (%s)\n", ops->name, best->name, best->meaning, best->settings);
     }
     putchar('\n');
 }

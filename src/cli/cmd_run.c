@@ -222,7 +222,8 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     if (o->memory) experiment->limit_bytes = o->memory;
     RT_TRY(choose_directory(o, experiment, error));
     RT_TRY(choose_start(o, experiment, error));
-    if (o->threads >= 0) how->workload.threads = how->workload.timing = o->threads;
+    how->workload.timing = o->threads >= 0 ? o->threads : (int)experiment->threads;
+    if (o->threads >= 0) how->workload.threads = o->threads;
     if (!o->found && how->scripts == RT_SCRIPTS_SHIPPED) how->scripts = RT_SCRIPTS_OWN;
     RT_TRY(rt_results_init(&results, experiment, error));
     return o->dry ? dry_run(&results, how, o->count == 1, error) : measure(o, &results, error);

@@ -34,7 +34,9 @@ RtCellCount rt_count_cells(const RtResults *results, const RtWorkloadOptions *op
             !rt_selection_has(&options->only, e, at.workload, at.candidate, at.kind))
             continue;
         count.cells++;
-        count.finished += at.cell->counted && (at.cell->timed || count_only);
+        count.finished +=
+            at.cell->counted &&
+            (at.cell->timed || count_only || !rt_results_times(results, at.workload, at.candidate, at.kind));
     }
     return count;
 }

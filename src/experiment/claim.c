@@ -119,25 +119,22 @@ static RtStatus read_measure(Reader *r, RtClaimMeasure *measure) {
     return fail_choice(r, word(r), "a measure", &choice);
 }
 
-/* Whether `name` is that of a baseline of several settings, which a measure of rays may be of. */
-static bool is_best(const Reader *r, const char *name) {
-    return *r->experiment->best && strcmp(r->experiment->best, name) == 0;
-}
-
 static RtStatus read_accel(Reader *r, char accel[RT_MAX_LABEL], bool may_be_all) {
     const RtExperiment *experiment = r->experiment;
     Choice choice = {0};
-    bool found = (may_be_all && strcmp(word(r), RT_CLAIM_ALL) == 0) || is_best(r, word(r));
+    bool found = may_be_all && strcmp(word(r), RT_CLAIM_ALL) == 0, best = false;
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         offer(&choice, experiment->candidates[c].stem);
-        found |= rt_candidate_is_called(&experiment->candidates[c], word(r));
+        const bool called = rt_candidate_is_called(&experiment->candidates[c], word(r));
+        found |= called;
+        best |= called && experiment->candidates[c].member_count > 0;
     }
     for (uint32_t c = 0; c < experiment->candidate_count; c++)
         offer(&choice, experiment->candidates[c].label);
     if (!found) return fail_choice(r, word(r), "the label of one of the accelerators", &choice);
     const RtClaimMeasure of_structure =
         r->claim->first >= RT_CLAIM_BUILD_TIME ? r->claim->first : r->claim->measure;
-    if (is_best(r, word(r)) && of_structure >= RT_CLAIM_BUILD_TIME)
+    if (best && of_structure >= RT_CLAIM_BUILD_TIME)
         return fail(r,
                     "'%s' is another setting for each kind of rays, each with its own %s: name one of them",
                     word(r), measures[of_structure]);

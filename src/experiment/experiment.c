@@ -15,7 +15,7 @@ void rt_experiment_init(RtExperiment *experiment) {
     experiment->builds = 20;
     experiment->milliseconds = 20;
     experiment->seed = 1;
-    experiment->baseline_count = 1;
+    experiment->threads = 1;
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         if (k != RT_RAY_OCCLUSION) experiment->kinds[experiment->kind_count++] = (RtRayKind)k;
     }
@@ -68,7 +68,7 @@ bool rt_paper_is_seen(const RtPaper *paper) {
     return strcmp(paper->page, "unseen") != 0;
 }
 
-/* ---- the baseline ---- */
+/* ---- the best of several ---- */
 
 /* "embree-16-high-avx512" of "embree:query=16,quality=high,isa=avx512": short, and without commas, which
  * gnuplot does not accept. */
@@ -85,65 +85,153 @@ static void label_setting(const char *spec, char label[RT_MAX_LABEL]) {
     label[used] = '\0';
 }
 
-/* Those that are missing come last, and are no baseline: claims may name them on every machine. */
-static void append_setting(RtExperiment *experiment, RtCandidate *candidate) {
-    candidate->ray_stride = 1;
-    candidate->optional = true;
-    memcpy(candidate->stem, candidate->label, sizeof candidate->stem);
+static bool is_best_of(const RtCandidate *candidate) {
+    return *candidate->best_of || rt_best_is(candidate->spec);
+}
+
+static RtStatus add_candidate(RtExperiment *experiment, const RtCandidate *candidate, RtError *error) {
+    if (experiment->candidate_count == RT_MAX_CANDIDATES)
+        return rt_fail(error, RT_BAD_INPUT, "there are more than %d accelerators: choose from fewer settings",
+                       RT_MAX_CANDIDATES);
     experiment->candidates[experiment->candidate_count++] = *candidate;
-    if (!candidate->missing) experiment->baseline_count++;
+    return RT_OK;
 }
 
-/* The baseline of the results: the accelerators after those of the YAML in the manifest. */
-static void append_from_manifest(RtExperiment *experiment) {
-    RtCandidate candidate = {0};
-    while (experiment->candidate_count < RT_MAX_CANDIDATES &&
-           rt_manifest_candidate(experiment->manifest, experiment->candidate_count, &candidate)) {
-        candidate.missing = rt_manifest_is_missing(experiment->manifest, experiment->candidate_count);
-        append_setting(experiment, &candidate);
+/* Whether two specs have the same effective parameters. */
+static bool same_spec(const char *a, const char *b) {
+    char whole[2][RT_MAX_SPEC_CHARS];
+    const char *const texts[] = {a, b};
+    for (int i = 0; i < 2; i++) {
+        RtSpec spec;
+        if (rt_spec_parse(texts[i], &spec, NULL) != RT_OK) return false;
+        rt_spec_format(&spec, whole[i]);
     }
+    return strcmp(whole[0], whole[1]) == 0;
 }
 
-static RtStatus append_best(RtExperiment *experiment, const char *label, RtError *error) {
+/* The settings of a best-of, those of its own list or of the accelerator's. */
+static RtStatus list_settings(RtExperiment *experiment, const RtCandidate *best,
+                              char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS], size_t *count, RtError *error) {
+    size_t here;
+    if (!*best->best_of) return rt_best_specs(best->spec, specs, &here, count, error);
+    RtCandidate like = {.ray_stride = 1};
+    const uint32_t before = experiment->candidate_count;
+    memcpy(like.spec, best->best_of, sizeof like.spec);
+    const RtStatus status = rt_experiment_add_accels(experiment, &like, error);
+    *count = experiment->candidate_count - before;
+    experiment->candidate_count = before;
+    RT_TRY(status);
+    if (*count > RT_MAX_OWN_BEST)
+        return rt_fail(error, RT_BAD_INPUT, "'%s' chooses from %zu settings: at most %d, which are tried",
+                       best->label, *count, RT_MAX_OWN_BEST);
+    for (size_t i = 0; i < *count; i++)
+        memcpy(specs[i], experiment->candidates[before + i].spec, sizeof *specs);
+    return RT_OK;
+}
+
+/* A setting that is a candidate already on the same scenes and rays is not measured twice. */
+static RtStatus add_members(RtExperiment *experiment, uint32_t b, RtError *error) {
     char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS];
-    size_t count = 0, all = 0;
-    RT_TRY(rt_best_specs(label, specs, &count, &all, error));
-    if (experiment->candidate_count + all > RT_MAX_CANDIDATES)
-        return rt_fail(error, RT_BAD_INPUT, "'%s' expands to %zu accelerators: an experiment has at most %d",
-                       label, all, RT_MAX_CANDIDATES);
-    for (size_t i = 0; i < all; i++) {
-        RtCandidate candidate = {.missing = i >= count};
-        memcpy(candidate.spec, specs[i], sizeof candidate.spec);
-        label_setting(specs[i], candidate.label);
-        append_setting(experiment, &candidate);
+    size_t count = 0;
+    RT_TRY(list_settings(experiment, &experiment->candidates[b], specs, &count, error));
+    for (size_t i = 0; i < count; i++) {
+        RtCandidate *best = &experiment->candidates[b];
+        uint32_t c = 0;
+        for (; c < experiment->candidate_count; c++) {
+            const RtCandidate *other = &experiment->candidates[c];
+            if (other->excluded == best->excluded && other->ray_stride == best->ray_stride &&
+                same_spec(other->spec, specs[i]))
+                break;
+        }
+        best->members[best->member_count++] = (uint16_t)c;
+        if (c < experiment->candidate_count) continue;
+        RtCandidate member = {.entry = best->entry,
+                              .ray_stride = best->ray_stride,
+                              .excluded = best->excluded,
+                              .optional = true,
+                              .tried = true};
+        memcpy(member.spec, specs[i], sizeof member.spec);
+        label_setting(specs[i], member.label);
+        memcpy(member.stem, member.label, sizeof member.stem);
+        RT_TRY(add_candidate(experiment, &member, error));
     }
     return RT_OK;
 }
 
-RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error) {
+/* Finds the members of a best-of of the results by their labels in the manifest. */
+static void find_members(RtExperiment *experiment, uint32_t b) {
+    RtCandidate *best = &experiment->candidates[b];
+    const char *label;
+    for (size_t i = 0; i < RT_MAX_BEST && (label = rt_manifest_member(experiment->manifest, b, i)); i++) {
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            if (c == b || strcmp(experiment->candidates[c].label, label) != 0) continue;
+            best->members[best->member_count++] = (uint16_t)c;
+            if (experiment->candidates[c].tried) experiment->candidates[c].excluded = best->excluded;
+            break;
+        }
+    }
+}
+
+/* The accelerators after those of the YAML in the manifest of results. */
+static void append_from_manifest(RtExperiment *experiment) {
+    RtCandidate candidate = {.ray_stride = 1, .optional = true};
+    while (rt_manifest_candidate(experiment->manifest, experiment->candidate_count, &candidate)) {
+        memcpy(candidate.stem, candidate.label, sizeof candidate.stem);
+        candidate.tried = !rt_best_is(candidate.spec);
+        if (add_candidate(experiment, &candidate, NULL) != RT_OK) return;
+    }
+}
+
+static uint32_t find_label(const RtExperiment *experiment, const char *label) {
     uint32_t c = 0;
+    while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
+    return c;
+}
+
+void rt_experiment_set_baseline(RtExperiment *experiment, const char *label) {
+    uint32_t c = 0, listed = experiment->candidate_count;
+    append_from_manifest(experiment);
     if (!label) label = json_string_value(json_object_get(experiment->manifest, "baseline"));
     if (!label) { /* the first that is not a plugin's: without a working baseline nothing could be compared */
-        while (c < experiment->candidate_count && rt_spec_text_is_remote(experiment->candidates[c].spec)) c++;
-        experiment->baseline = c < experiment->candidate_count ? c : 0;
-        return RT_OK;
+        while (c < listed && rt_spec_text_is_remote(experiment->candidates[c].spec)) c++;
+        experiment->baseline = c < listed ? c : 0;
+        return;
     }
-    while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
-    experiment->baseline = c;
-    if (c < experiment->candidate_count || !rt_best_is(label)) return RT_OK;
-    snprintf(experiment->best, sizeof experiment->best, "%s", label);
-    experiment->baseline_count = 0;
-    if (!experiment->manifest) return append_best(experiment, label, error);
-    append_from_manifest(experiment);
-    return RT_OK;
+    experiment->baseline = find_label(experiment, label);
+    if (experiment->baseline < experiment->candidate_count || !rt_best_is(label)) return;
+    RtCandidate best = {.entry = UINT32_MAX, .ray_stride = 1};
+    snprintf(best.label, sizeof best.label, "%s", label);
+    memcpy(best.stem, best.label, sizeof best.stem);
+    memcpy(best.spec, best.label, sizeof best.spec);
+    /* Manifests of version 1.0 had the members alone. */
+    for (c = listed; c < experiment->candidate_count && best.member_count < RT_MAX_BEST; c++)
+        best.members[best.member_count++] = (uint16_t)c;
+    add_candidate(experiment, &best, NULL);
+}
+
+bool rt_candidate_is_member(const RtExperiment *experiment, uint32_t best, uint32_t c) {
+    const RtCandidate *candidate = best < experiment->candidate_count ? &experiment->candidates[best] : NULL;
+    for (uint32_t i = 0; candidate && i < candidate->member_count; i++) {
+        if (candidate->members[i] == c) return true;
+    }
+    return false;
 }
 
 bool rt_candidate_is_baseline(const RtExperiment *experiment, uint32_t c) {
-    return c - experiment->baseline < experiment->baseline_count;
+    return c == experiment->baseline || rt_candidate_is_member(experiment, experiment->baseline, c);
+}
+
+uint32_t rt_candidate_built(const RtExperiment *experiment, uint32_t c) {
+    if (c < experiment->candidate_count) return c;
+    const RtCandidate *baseline = &experiment->candidates[experiment->baseline];
+    for (uint32_t i = 0; i < baseline->member_count; i++) {
+        if (!experiment->candidates[baseline->members[i]].missing) return baseline->members[i];
+    }
+    return experiment->baseline;
 }
 
 const char *rt_baseline_label(const RtExperiment *experiment) {
-    return *experiment->best ? experiment->best : experiment->candidates[experiment->baseline].label;
+    return experiment->candidates[experiment->baseline].label;
 }
 
 /* ---- labels ---- */
@@ -217,7 +305,7 @@ static RtStatus check_spec(RtExperiment *experiment, uint32_t i, RtError *error)
     RtCandidate *candidate = &experiment->candidates[i];
     RtError why = {RT_OK, ""};
     candidate->missing = experiment->manifest && rt_manifest_is_missing(experiment->manifest, i);
-    if (experiment->manifest) return RT_OK;
+    if (experiment->manifest || is_best_of(candidate)) return RT_OK;
     if (rt_spec_parse(candidate->spec, &candidate->parsed, &why) == RT_OK) {
         candidate->missing =
             candidate->optional && rt_spec_available(&candidate->parsed, NULL) == RT_NOT_AVAILABLE;
@@ -238,6 +326,16 @@ static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *e
         if (meet && strcmp(candidate->label, other->label) == 0) return fail_twice(candidate->label, error);
     }
     return check_label(candidate->label, error);
+}
+
+/* A best-of is missing if all its members are. */
+static void mark_missing(RtExperiment *experiment) {
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        RtCandidate *best = &experiment->candidates[c];
+        best->missing |= best->member_count > 0;
+        for (uint32_t i = 0; i < best->member_count; i++)
+            best->missing &= experiment->candidates[best->members[i]].missing;
+    }
 }
 
 static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
@@ -306,7 +404,30 @@ static RtStatus check_frame(const RtExperiment *experiment, RtError *error) {
     return RT_OK;
 }
 
+/* Names the place of candidate `c` in the YAML. */
+static void place_candidate(const RtExperiment *experiment, uint32_t c, char *where) {
+    const uint32_t entry = experiment->candidates[c].entry;
+    snprintf(where, RT_MAX_LABEL, entry == UINT32_MAX ? "baseline" : "accelerators[%u]", entry);
+}
+
+static RtStatus expand(RtExperiment *experiment, char *where, RtError *error) {
+    for (uint32_t c = 0, count = experiment->candidate_count; c < count; c++) {
+        if (!is_best_of(&experiment->candidates[c]) || experiment->candidates[c].member_count > 0) continue;
+        place_candidate(experiment, c, where);
+        if (experiment->manifest) {
+            find_members(experiment, c);
+            continue;
+        }
+        const RtStatus status = add_members(experiment, c, error);
+        const bool unknown = status == RT_NOT_AVAILABLE || is_unknown(experiment->candidates[c].spec);
+        experiment->candidates[c].missing = status != RT_OK && experiment->candidates[c].optional && unknown;
+        if (!experiment->candidates[c].missing) RT_TRY(status);
+    }
+    return RT_OK;
+}
+
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error) {
+    RT_TRY(expand(experiment, where, error));
     for (uint32_t i = 0; i < experiment->workload_count; i++) {
         snprintf(where, RT_MAX_LABEL, "scenes[%u]", experiment->workloads[i].entry);
         const RtWorkload *workload = &experiment->workloads[i];
@@ -316,8 +437,7 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
         RT_TRY(check_swept(experiment, &workload->swept, error));
     }
     for (uint32_t i = 0; i < experiment->candidate_count; i++) {
-        snprintf(where, RT_MAX_LABEL, "accelerators[%u]", experiment->candidates[i].entry);
-        if (*experiment->best && rt_candidate_is_baseline(experiment, i)) strcpy(where, "baseline");
+        place_candidate(experiment, i, where);
         RT_TRY(check_candidate(experiment, i, error));
         RT_TRY(check_swept(experiment, &experiment->candidates[i].swept, error));
     }
@@ -329,10 +449,11 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
                            rt_ray_kind_name(experiment->kinds[i]));
         }
     }
+    mark_missing(experiment);
     strcpy(where, "baseline");
     RT_TRY(check_baseline(experiment, error));
     snprintf(experiment->again, sizeof experiment->again, "%s (again)",
-             experiment->candidates[experiment->baseline].label);
+             experiment->candidates[rt_candidate_built(experiment, experiment->candidate_count)].label);
     shorten_labels(experiment);
     strcpy(where, "frame");
     RT_TRY(check_frame(experiment, error));
@@ -367,9 +488,11 @@ bool rt_selection_has(const RtSelection *only, const RtExperiment *experiment, u
     if (only->shards && workload % only->shards != only->shard - 1) return false;
     for (uint32_t i = 0; i < only->part_count && !found; i++) {
         const RtPart *part = &only->parts[i];
-        const bool accel = candidate == experiment->candidate_count || !part->accel ||
-                           rt_candidate_is_baseline(experiment, candidate) ||
-                           rt_candidate_is_called(&experiment->candidates[candidate], part->accel);
+        bool accel = candidate == experiment->candidate_count || !part->accel ||
+                     rt_candidate_is_baseline(experiment, candidate);
+        for (uint32_t c = 0; c < experiment->candidate_count && !accel; c++)
+            accel = rt_candidate_is_called(&experiment->candidates[c], part->accel) &&
+                    (c == candidate || rt_candidate_is_member(experiment, c, candidate));
         found = accel && has_scene(part, experiment, workload) && has_kind(part, kind);
     }
     return found;

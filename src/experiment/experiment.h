@@ -22,6 +22,7 @@
 #define RT_MAX_CLAIMS     64
 #define RT_MAX_CLAIM      256
 #define RT_MAX_PAPERS     16
+#define RT_MAX_OWN_BEST   8 /* settings of a best-of that an experiment lists itself */
 
 #define RT_ALL_RAYS RT_RAY_KIND_COUNT /* stands for all ray kinds of an experiment together */
 
@@ -83,11 +84,18 @@ typedef struct RtCandidate {
     char group[RT_MAX_WORD];      /* its heading in the table of frames, or "" */
     char spec[RT_MAX_SPEC_CHARS]; /* as written */
     RtSpec parsed;                /* by rt_experiment_check, if this build has it */
-    uint64_t ray_stride;          /* k: measured on every kth ray of a set, for slow accelerators; >= 1 */
-    uint32_t excluded;            /* bit t: it is not measured on workloads[t] */
-    bool optional; /* if a plugin that is not loaded has it, or the machine cannot run it, it is
-                      missing, no error */
-    bool missing;  /* this build or machine lacks it: skipped with a notice */
+    /* A best-of has members instead, the settings among which a run chooses for each scene and kind of rays:
+     * those of RtBestOf, or of the sweep `best_of`. It has no cells of its own (rt_results_candidate). The
+     * first member is the default. */
+    char best_of[RT_MAX_SPEC_CHARS];
+    uint16_t members[RT_MAX_BEST];
+    uint32_t member_count; /* 0: it is measured itself */
+    bool tried;            /* only a member, not listed: tables to read leave it out */
+    uint64_t ray_stride;   /* k: measured on every kth ray of a set, for slow accelerators; >= 1 */
+    uint32_t excluded;     /* bit t: it is not measured on workloads[t] */
+    bool optional;         /* if a plugin that is not loaded has it, or the machine cannot run it, it is
+                              missing, no error */
+    bool missing;          /* this build or machine lacks it: skipped with a notice */
 } RtCandidate;
 
 _Static_assert(RT_MAX_WORKLOADS <= 32, "a bit of excluded for every workload");
@@ -131,11 +139,8 @@ typedef struct RtExperiment {
     RtCandidate candidates[RT_MAX_CANDIDATES];
     uint32_t candidate_count;
     char again[RT_MAX_LABEL +
-               8]; /* label of the null run, the baseline's with " (again)": rt_experiment_check */
-    /* The candidates baseline..baseline + baseline_count - 1: ratios refer to the fastest of them on the rays
-     * of the cell. None of them is thinned. */
-    uint32_t baseline, baseline_count;
-    char best[RT_MAX_LABEL]; /* the name of several, "embree:best"; else "" */
+               8];     /* label of the null run, the baseline's with " (again)": rt_experiment_check */
+    uint32_t baseline; /* the candidate that ratios refer to; may be a best-of */
     RtRayKind kinds[RT_RAY_KIND_COUNT];
     uint32_t kind_count;
     uint64_t limit;        /* rays of one kind at most; a larger set is thinned evenly */
@@ -143,6 +148,7 @@ typedef struct RtExperiment {
     uint32_t rounds;       /* 1..RT_MAX_ROUNDS */
     uint32_t builds;       /* of each structure at most, after a warm-up: 1..RT_MAX_ROUNDS */
     uint32_t milliseconds; /* a short set is repeated within a round until it takes this long; 0: once */
+    uint32_t threads;      /* for timed builds and rays; 0: all processors */
     uint64_t seed;
     double limit_seconds; /* longer cells are left out; 0: no limit */
     uint64_t limit_bytes; /* larger structures, also while built, are left out; 0: no limit */
@@ -168,7 +174,7 @@ typedef struct RtExperiment {
 } RtExperiment;
 
 /* No scenes, no candidates, all ray kinds except occlusion (it repeats diffuse), and the defaults: limit
- * 100000, coherent runs of RT_COHERENT_RUN, 10 rounds, 20 builds, 20 milliseconds. */
+ * 100000, coherent runs of RT_COHERENT_RUN, 10 rounds, 20 builds, 20 milliseconds, 1 thread. */
 void rt_experiment_init(RtExperiment *experiment);
 
 /* Reads the YAML at `path`. Reports any error (unknown keys, invalid specs, duplicate labels, a baseline that
@@ -195,18 +201,25 @@ bool rt_paper_is_seen(const RtPaper *paper);
 /* Whether rays of that kind are asked for. */
 bool rt_experiment_has_kind(const RtExperiment *experiment, RtRayKind kind);
 
-/* Whether candidate `c`, which may be the null run (candidate_count), is measured on workload `t`. */
+/* Whether candidate `c`, which may be the null run (candidate_count), is measured on workload `t`; of a
+ * best-of, whether any member is. */
 bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t);
 
-/* Sets the baseline by its label. The name of a best-of (accel.h: "embree:best") appends its settings to the
- * candidates. An unknown label sets an index that rt_experiment_check rejects. NULL chooses the first
- * candidate that is not a plugin's. */
-RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error);
+/* Sets the baseline by its label. The name of a best-of (accel.h: "embree:best") is appended to the
+ * candidates if it is not one of them. An unknown label sets an index that rt_experiment_check rejects. NULL
+ * chooses the first candidate that is not a plugin's. */
+void rt_experiment_set_baseline(RtExperiment *experiment, const char *label);
 
-/* Whether candidate `c` belongs to the baseline. */
+/* Whether candidate `c` is a member of the best-of `best`. */
+bool rt_candidate_is_member(const RtExperiment *experiment, uint32_t best, uint32_t c);
+
+/* Whether candidate `c` is the baseline, or a member of it. */
 bool rt_candidate_is_baseline(const RtExperiment *experiment, uint32_t c);
 
-/* The label of the baseline, or "embree:best". */
+/* The candidate whose spec is built for `c`: itself; for the null run (candidate_count) the baseline, or the
+ * first of its members that this machine has. */
+uint32_t rt_candidate_built(const RtExperiment *experiment, uint32_t c);
+
 const char *rt_baseline_label(const RtExperiment *experiment);
 
 /* The candidate with that label on workload `t`; candidate_count for `again`, the null run; candidate_count +
@@ -253,8 +266,9 @@ const char *rt_swept_of(const RtExperiment *experiment, const RtSweptKey *key, u
 /* Whether labels may have this character: they name CSV rows, plots and image files. */
 bool rt_may_label(char c);
 
-/* Checks that the parts of an experiment, each in its range, are consistent; marks candidates that this build
- * lacks. *where, RT_MAX_LABEL characters, gets the path of the fault in the YAML ("name", "accelerators[2]").
+/* Appends the members of each best-of that are not candidates yet; checks that the parts of an experiment,
+ * each in its range, are consistent; marks candidates that this build lacks. *where, RT_MAX_LABEL characters,
+ * gets the path of the fault in the YAML ("name", "accelerators[2]").
  */
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error);
 
@@ -295,6 +309,9 @@ RtStatus rt_selection_check(const RtSelection *only, const RtExperiment *experim
 
 /* Copies spec and label of accelerator number `i` to *candidate; false if there is none. */
 bool rt_manifest_candidate(const json_t *manifest, uint32_t i, RtCandidate *candidate);
+
+/* The label of a member of the best-of that is accelerator number `i`; NULL if there are no more. */
+const char *rt_manifest_member(const json_t *manifest, uint32_t i, size_t member);
 
 /* Whether the build that ran it lacked accelerator number `i`. */
 bool rt_manifest_is_missing(const json_t *manifest, uint32_t i);

@@ -114,9 +114,13 @@ static RtStatus read_group(const RtYaml *y, const RtYamlNode *n, const char *key
 static RtStatus read_candidates(const RtYaml *y, const RtYamlNode *n, uint32_t entry,
                                 RtExperiment *experiment, RtError *error) {
     RtCandidate like = {.entry = entry, .ray_stride = 1};
-    RT_TRY(rt_yaml_keys(y, n, "accel label? group? ray_stride? scenes? optional?"));
+    RT_TRY(rt_yaml_keys(y, n, "accel best_of? label? group? ray_stride? scenes? optional?"));
     RT_TRY(read_group(y, n, "group", like.group));
     RT_TRY(rt_yaml_copy(y, n, "accel", RT_MAX_SPEC_CHARS, like.spec));
+    RT_TRY(rt_yaml_copy(y, n, "best_of", RT_MAX_SPEC_CHARS, like.best_of));
+    if (*like.best_of && !rt_best_is(like.spec))
+        return rt_yaml_fail(y, rt_yaml_get(y, n, "best_of"),
+                            "the best of several settings has a name like grid:best, not '%s'", like.spec);
     RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, like.label));
     RT_TRY(rt_yaml_u64(y, n, "ray_stride", 1, RT_MAX_RAYS_A_KIND, &like.ray_stride));
     RT_TRY(read_scenes(y, rt_yaml_get(y, n, "scenes"), experiment, &like));
@@ -243,7 +247,8 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(rt_yaml_keys(
         y, n,
         "name section? paper? question prediction scenes accelerators baseline? rays? limit? coherent_run? "
-        "rounds? builds? milliseconds? seed? count_only? render? hardware? distributions? published? frame? "
+        "rounds? builds? milliseconds? threads? seed? count_only? render? hardware? distributions? "
+        "published? frame? "
         "quick? plots? expect? finding? limits? format?"));
     RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_WORD, experiment->name));
     RT_TRY(rt_yaml_copy(y, n, "section", RT_MAX_WORD, experiment->section));
@@ -256,6 +261,7 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     if (rt_yaml_get(y, n, "limits")) RT_TRY(read_limits(y, rt_yaml_get(y, n, "limits"), experiment));
     RT_TRY(rt_yaml_u64(y, n, "coherent_run", 1, RT_MAX_RAYS_A_KIND, &experiment->coherent_run));
     RT_TRY(rt_yaml_u64(y, n, "seed", 0, INT64_MAX, &experiment->seed));
+    RT_TRY(rt_yaml_u32(y, n, "threads", 0, 1024, &experiment->threads));
     RT_TRY(read_flag(y, n, "count_only", &experiment->count_only));
     RT_TRY(read_flag(y, n, "render", &experiment->render));
     RT_TRY(read_flag(y, n, "distributions", &experiment->distributions));
@@ -267,7 +273,7 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(read_lists(y, n, experiment, error));
     const char *baseline = NULL;
     RT_TRY(rt_yaml_text(y, n, "baseline", RT_MAX_LABEL - 1, &baseline));
-    RT_TRY(rt_yaml_place(y, rt_experiment_set_baseline(experiment, baseline, error), n, "baseline"));
+    rt_experiment_set_baseline(experiment, baseline);
     const RtYamlNode *smaller = rt_yaml_get(y, n, "quick"), *frame = rt_yaml_get(y, n, "frame");
     if (frame) RT_TRY(read_frame(y, frame, &experiment->frame));
     if (smaller) RT_TRY(read_quick(y, smaller, quick, experiment));

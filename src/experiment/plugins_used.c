@@ -69,7 +69,7 @@ json_t *rt_plugins_changed_since(const json_t *before, const RtExperiment *exper
 bool rt_plugins_concern(const json_t *object, const RtExperiment *experiment, uint32_t candidate) {
     const char *name;
     json_t *plugin;
-    uint32_t c = candidate < experiment->candidate_count ? candidate : experiment->baseline;
+    const uint32_t c = rt_candidate_built(experiment, candidate);
     json_object_foreach((json_t *)object, name, plugin) {
         if (has_layer(experiment->candidates[c].spec, name)) return true;
     }

@@ -235,6 +235,10 @@ bool rt_manifest_candidate(const json_t *manifest, uint32_t i, RtCandidate *cand
     return true;
 }
 
+const char *rt_manifest_member(const json_t *manifest, uint32_t i, size_t member) {
+    return json_string_value(json_array_get(json_object_get(entry_at(manifest, i), "best_of"), member));
+}
+
 bool rt_manifest_is_missing(const json_t *manifest, uint32_t i) {
     return json_is_true(json_object_get(entry_at(manifest, i), "missing"));
 }
@@ -464,9 +468,9 @@ uint32_t rt_experiment_swept(const RtExperiment *experiment, RtSweptKey keys[RT_
 
 const char *rt_swept_of(const RtExperiment *experiment, const RtSweptKey *key, uint32_t workload,
                         uint32_t candidate) {
-    uint32_t c = candidate < experiment->candidate_count ? candidate : experiment->baseline;
-    const RtSwept *swept =
-        key->scene ? &experiment->workloads[workload].swept : &experiment->candidates[c].swept;
+    const RtSwept *swept = key->scene
+                               ? &experiment->workloads[workload].swept
+                               : &experiment->candidates[rt_candidate_built(experiment, candidate)].swept;
     for (uint32_t i = 0; i < swept->count; i++) {
         if (strcmp(swept->keys[i], key->key) == 0) return swept->values[i];
     }

@@ -280,3 +280,37 @@ RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, u
     close_runners(&run);
     return status;
 }
+
+/* ---- rays that are learnt ---- */
+
+/* The seconds of `repeats` passes, each after a pass `before`. */
+static RtStatus time_after(RtPass *before, RtPass *pass, uint32_t repeats, double *seconds, RtError *error) {
+    *seconds = 0;
+    for (uint32_t i = 0; i < repeats; i++) {
+        RT_TRY(rt_pass_run(before, error));
+        const double start = rt_thread_seconds();
+        RT_TRY(rt_pass_run(pass, error));
+        *seconds += rt_thread_seconds() - start;
+    }
+    return RT_OK;
+}
+
+RtStatus rt_measure_learning(const RtAccel *accel, const RtRaySet *set, const RtRaySet *others,
+                             double *learnt, RtError *error) {
+    enum { PAIRS = 7 };
+    const double least = 2e-3; /* seconds */
+    RT_OWNED(RtPass, own, rt_pass_clear);
+    RT_OWNED(RtPass, other, rt_pass_clear);
+    double ratios[PAIRS], once, alone, beside;
+    RT_TRY(init_pass(&own, accel, set, 1, false, error));
+    RT_TRY(init_pass(&other, accel, others, 1, false, error));
+    RT_TRY(time_after(&other, &own, 1, &once, error));
+    const uint32_t repeats = rt_runner_repeats(once, least);
+    for (int i = 0; i < PAIRS; i++) {
+        RT_TRY(time_after(&own, &own, repeats, &alone, error));
+        RT_TRY(time_after(&other, &own, repeats, &beside, error));
+        ratios[i] = beside / alone;
+    }
+    *learnt = rt_median(ratios, PAIRS);
+    return RT_OK;
+}

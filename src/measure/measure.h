@@ -131,6 +131,12 @@ void rt_runner_close(RtRunner *runner);
 RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
                          RtError *error);
 
+/* How much longer a pass over `set` takes, on one thread, if passes over other rays lie between its passes:
+ * *learnt gets the median of paired ratios. Much above 1 where branch predictors and caches hold what the
+ * rays of `set` need, which they do not among the rays of a frame. Not for remote accelerators. */
+RtStatus rt_measure_learning(const RtAccel *accel, const RtRaySet *set, const RtRaySet *others,
+                             double *learnt, RtError *error);
+
 /* ---- files (ray_file.c) ---- */
 
 /* Ray sets as NumPy arrays (.npy): rays may come from any other renderer, and answers and counts may go to

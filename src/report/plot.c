@@ -41,7 +41,8 @@ void rt_candidate_color(const RtExperiment *experiment, uint32_t candidate, char
         const uint32_t own = rt_accel_color(experiment->candidates[candidate].spec);
         uint32_t earlier = 0, all = 0;
         for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-            bool same = rt_accel_color(experiment->candidates[c].spec) == own;
+            bool same =
+                rt_accel_color(experiment->candidates[c].spec) == own && !experiment->candidates[c].tried;
             earlier += same && c < candidate;
             all += same;
         }
@@ -113,6 +114,7 @@ static void find_first(const RtExperiment *experiment, const RtSweptKey *key, bo
 
 static bool is_measured(const RtResults *results, uint32_t t, uint32_t c) {
     const RtCost cost = rt_results_cost(results, t, c, RT_ALL_RAYS);
+    if (results->experiment->candidates[c].tried) return false;
     return results->workloads[t].known && (!isnan(cost.seconds.median) || !isnan(cost.object_tests));
 }
 
@@ -269,7 +271,9 @@ enum { MOST_SCRIPTS = RT_MAX_PLOTS + 4 };
 
 /* ---- variables ---- */
 
-/* Whether the CSV files have rows of the candidate, and it is the first of its label. */
+/* Whether times.csv or counts.csv has rows of the candidate, it is the first of its label, and not only
+ * tried.
+ */
 static bool has_rows(const RtResults *results, uint32_t candidate) {
     const RtCandidate *candidates = results->experiment->candidates;
     for (uint32_t c = 0; c < candidate; c++) {
@@ -278,7 +282,7 @@ static bool has_rows(const RtResults *results, uint32_t candidate) {
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
             const RtCell *cell = rt_cell_at(results, t, candidate, (RtRayKind)k);
-            if (cell->counted || cell->timed) return true;
+            if (cell->counted || cell->timed || cell->chosen) return !candidates[candidate].tried;
         }
     }
     return false;

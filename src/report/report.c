@@ -50,10 +50,6 @@ static RtEstimate in_units(const RtEstimate *seconds, double a_second) {
     return (RtEstimate){a_second * seconds->median, a_second * seconds->low, a_second * seconds->high, 0};
 }
 
-static uint32_t baseline_of(const RtResults *results) {
-    return results->experiment->baseline_count > 1 ? RT_FASTEST_BASELINE : results->experiment->baseline;
-}
-
 static RtEstimate estimate_of(const Pivot *p, uint32_t workload, uint32_t candidate) {
     const RtCost cost = rt_results_cost(p->results, workload, candidate, p->kind);
     const RtBuildResult *build = rt_build_at(p->results, workload, candidate);
@@ -63,7 +59,8 @@ static RtEstimate estimate_of(const Pivot *p, uint32_t workload, uint32_t candid
     case EXTENT_TESTS: return rt_estimate_exactly(cost.extent_tests);
     case STEPS: return rt_estimate_exactly(cost.steps);
     case RATIO:
-        return rt_results_time_ratio(p->results, workload, baseline_of(p->results), candidate, p->kind, 0.95);
+        return rt_results_time_ratio(p->results, workload, p->results->experiment->baseline, candidate,
+                                     p->kind, 0.95);
     default: return build->known ? in_units(&build->seconds, 1e3) : rt_estimate_exactly((double)NAN);
     }
 }
@@ -97,6 +94,7 @@ static RtField get_cell(const void *row, const RtTableColumn *column) {
 static const void *row_of(void *context, size_t i) {
     Pivot *p = context;
     p->candidate = (uint32_t)i;
+    if (p->results->experiment->candidates[i].tried) return NULL;
     for (uint32_t c = 1; c < p->count; c++) {
         if (!isnan(estimate_of(p, (uint32_t)p->columns[c].key, p->candidate).median)) return p;
     }

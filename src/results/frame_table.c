@@ -55,7 +55,8 @@ static double seconds_of(const RtResults *results, uint32_t workload, uint32_t c
 }
 
 static double build_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    return rt_build_at(results, workload, candidate)->seconds.median;
+    const RtBuildResult *build = rt_build_at(results, workload, candidate);
+    return build->known ? build->seconds.median : (double)NAN;
 }
 
 static bool is_overlay(const RtExperiment *experiment, uint32_t candidate) {
@@ -90,7 +91,7 @@ static uint32_t next_of(const RtResults *results, uint32_t workload, Measure *of
             all || (strcmp(candidate->group, experiment->frame.among) == 0 && !is_overlay(experiment, c));
         const double own = of(results, workload, c);
         const bool after = own > before || (own == before && c > previous);
-        if (!compared || strcmp(candidate->spec, rt_accel_yardstick()) == 0) continue;
+        if (!compared || candidate->tried || strcmp(candidate->spec, rt_accel_yardstick()) == 0) continue;
         if (!rt_candidate_runs(experiment, c, workload) || !after || !(own < least)) continue;
         least = own;
         best = c;
@@ -174,8 +175,10 @@ static const void *row_at(void *context, size_t i) {
     const RtExperiment *experiment = r->results->experiment;
     r->candidate = (uint32_t)(i % experiment->candidate_count);
     if (!r->one) r->workload = (uint32_t)(i / experiment->candidate_count);
-    if (!rt_candidate_runs(experiment, r->candidate, r->workload) ||
-        !rt_build_at(r->results, r->workload, r->candidate)->known)
+    const RtCandidate *candidate = &experiment->candidates[r->candidate];
+    const bool chosen = candidate->member_count && !isnan(seconds_of(r->results, r->workload, r->candidate));
+    if (candidate->tried || !rt_candidate_runs(experiment, r->candidate, r->workload) ||
+        !(chosen || rt_build_at(r->results, r->workload, r->candidate)->known))
         return NULL;
     const uint32_t without = without_of(experiment, r->workload);
     for (int part = 0; part < RT_FRAME_PARTS; part++) {
@@ -334,8 +337,8 @@ void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX
 void rt_frame_legend(const RtExperiment *experiment, const char *mark, char out[RT_MAX_FRAME_TEXT]) {
     snprintf(
         out, RT_MAX_FRAME_TEXT,
-        "Mtests: object tests of a whole frame, in millions; ms: time to trace it on one thread; build: ms "
-        "to build, on all processors (--threads changes both). fewer, faster: how many times, than %s; "
+        "Mtests: object tests of a whole frame, in millions; ms: time to trace it; build: ms to build, both "
+        "on one thread (--threads). fewer, faster: how many times, than %s; "
         "primary, shadow, bounce (reflection and transmission): how many times faster. -: no such rays, "
         "or not counted. %s: the %s of %s. level: the difference is within the intervals of measurement.",
         experiment->frame.without, mark, experiment->count_only ? "best" : "fastest",

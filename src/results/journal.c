@@ -225,19 +225,20 @@ static const Member build_tally_members[] = {RT_TALLY_COUNTERS(COST_OF_BUILD)};
 static const Record build_tally = RECORD(build_tally_members);
 
 #define EXPECTED(name, meaning) MEMBER(RtBuildResult, NUMBER, #name, structure.name),
-static const Member build_members[] = {
-    MEMBER(RtBuildResult, COUNT, "interior", structure.interior),
-    MEMBER(RtBuildResult, COUNT, "leaves", structure.leaves),
-    MEMBER(RtBuildResult, COUNT, "empty_leaves", structure.empty_leaves),
-    MEMBER(RtBuildResult, COUNT, "references", structure.references),
-    MEMBER(RtBuildResult, COUNT, "depth", structure.depth),
-    RT_PREDICTIONS(EXPECTED) RT_QUALITIES(EXPECTED) MEMBER_OF("build", &build_tally),
-    MEMBER(RtBuildResult, TEXT, "spec", spec),
-    MEMBER(RtBuildResult, FLAG, "exact", exact),
-    MEMBER(RtBuildResult, FLAG, "counts", counts),
-    MEMBER(RtBuildResult, ESTIMATE, "seconds", seconds),
-    MEMBER(RtBuildResult, COUNT, "bytes", structure.bytes),
-    MEMBER_RANGE(RtBuildResult, ADDED, "builds", builds, 0, RT_MAX_ROUNDS)};
+static const Member build_members[] = {MEMBER(RtBuildResult, COUNT, "interior", structure.interior),
+                                       MEMBER(RtBuildResult, COUNT, "leaves", structure.leaves),
+                                       MEMBER(RtBuildResult, COUNT, "empty_leaves", structure.empty_leaves),
+                                       MEMBER(RtBuildResult, COUNT, "references", structure.references),
+                                       MEMBER(RtBuildResult, COUNT, "depth", structure.depth),
+                                       RT_PREDICTIONS(EXPECTED) RT_QUALITIES(EXPECTED)
+                                           MEMBER_OF("build", &build_tally),
+                                       MEMBER(RtBuildResult, TEXT, "spec", spec),
+                                       MEMBER(RtBuildResult, FLAG, "exact", exact),
+                                       MEMBER(RtBuildResult, FLAG, "counts", counts),
+                                       MEMBER(RtBuildResult, ESTIMATE, "seconds", seconds),
+                                       MEMBER(RtBuildResult, COUNT, "bytes", structure.bytes),
+                                       MEMBER_RANGE(RtBuildResult, ADDED, "builds", builds, 0, RT_MAX_ROUNDS),
+                                       MEMBER_RANGE(RtBuildResult, ADDED, "threads", threads, 0, 1024)};
 
 #define COUNTER(name, meaning) MEMBER(RtCell, COUNT, #name, tally.name),
 static const Member count_members[] = {RT_TALLY_COUNTERS(COUNTER) MEMBER(RtCell, COUNT, "differ", differ)};
@@ -246,6 +247,7 @@ static const Member time_members[] = {MEMBER_RANGE(RtCell, COUNT, "rays", tally.
                                       MEMBER_RANGE(RtCell, U32, "rounds", rounds, 1, RT_MAX_ROUNDS),
                                       MEMBER(RtCell, NUMBER, "repeats", repeats),
                                       MEMBER_RANGE(RtCell, ADDED, "structures", structures, 0, RT_MAX_ROUNDS),
+                                      MEMBER(RtCell, NUMBER, "learnt", learnt),
                                       MEMBER_RANGE(RtCell, INT, "threads", threads, 1, 0),
                                       MEMBER(RtCell, ESTIMATE, "seconds", seconds),
                                       MEMBER(RtCell, ESTIMATE, "wall", wall),
@@ -277,6 +279,7 @@ static const struct Part {
              [RT_EVENT_BUILD] = {"built", OF_BUILD, RECORD(build_members)},
              [RT_EVENT_COUNT] = {"counted", OF_CELL, RECORD(count_members)},
              [RT_EVENT_DISTRIBUTION] = {"distributed", OF_CELL, {NULL, 0}},
+             [RT_EVENT_CHOICE] = {"chosen", OF_CELL, {NULL, 0}},
              [RT_EVENT_TIME] = {"timed", OF_CELL, RECORD(time_members)},
              [RT_EVENT_RENDER] = {"rendered", OF_BUILD, RECORD(render_members)},
              [RT_EVENT_NO_BUILD] = {"too_large", OF_BUILD, {NULL, 0}},
@@ -322,6 +325,7 @@ static json_t *part_json(const RtResults *results, const RtEvent *event) {
     case RT_EVENT_BUILD: return build_json(build);
     case RT_EVENT_COUNT: return record_json(record, cell);
     case RT_EVENT_DISTRIBUTION: return rt_distributions_json(cell->distributions, 0, RT_RAY_QUANTITY_COUNT);
+    case RT_EVENT_CHOICE: return json_string(rt_candidate_label(results->experiment, cell->choice));
     case RT_EVENT_TIME: return time_json(results, cell);
     case RT_EVENT_RENDER: return add_machine(record_json(record, build), results, build->render.machine);
     case RT_EVENT_NO_BUILD: return json_string(build->left_out);
@@ -400,6 +404,23 @@ static void take_baseline(Reader *reader, const RtExperiment *experiment, uint32
     cell->baseline = c < experiment->candidate_count ? c : experiment->baseline;
 }
 
+static void choose(RtResults *results, uint32_t workload, uint32_t best, RtRayKind kind, uint32_t choice) {
+    RtCell *cell = rt_cell_at(results, workload, best, kind);
+    cell->chosen = true;
+    cell->choice = choice;
+}
+
+static void take_choice(Reader *reader, const json_t *line, RtResults *results, uint32_t workload,
+                        uint32_t candidate, RtRayKind kind) {
+    const char *label = take_text(reader, line, parts[RT_EVENT_CHOICE].key);
+    if (!label) return;
+    const uint32_t c = rt_candidate_find(results->experiment, label, workload);
+    if (rt_candidate_is_member(results->experiment, candidate, c))
+        choose(results, workload, candidate, kind, c);
+    else
+        reject(reader, parts[RT_EVENT_CHOICE].key, "a setting of this accelerator");
+}
+
 /* A flag that journals of older versions lack. */
 static bool take_added_flag(Reader *reader, const json_t *line, const char *key) {
     const json_t *flag = json_object_get(line, key);
@@ -439,7 +460,10 @@ static void take_build(Reader *reader, const json_t *line, RtResults *results, u
 }
 
 static void take_cell(Reader *reader, const json_t *line, RtResults *results, uint32_t workload,
-                      RtCell *cell) {
+                      uint32_t candidate, RtRayKind kind) {
+    const RtExperiment *experiment = results->experiment;
+    RtCell *cell = rt_cell_at(results, workload, candidate, kind);
+    take_choice(reader, line, results, workload, candidate, kind);
     cell->counted |= take_part(reader, line, RT_EVENT_COUNT, cell) != NULL;
     take_distributions(reader, &cell->distributions, 0, RT_RAY_QUANTITY_COUNT,
                        json_object_get(line, "distributed"));
@@ -451,7 +475,10 @@ static void take_cell(Reader *reader, const json_t *line, RtResults *results, ui
     const json_t *timed = take_part(reader, line, RT_EVENT_TIME, cell);
     cell->timed |= timed != NULL;
     if (!timed) return;
-    take_baseline(reader, results->experiment, workload, cell, timed);
+    take_baseline(reader, experiment, workload, cell, timed);
+    /* Version 1.0 chose among the settings of the baseline alone, and kept no choice of its own. */
+    if (candidate < experiment->candidate_count && cell->baseline != experiment->baseline)
+        choose(results, workload, experiment->baseline, kind, cell->baseline);
     cell->machine = take_machine(reader, results, timed);
     take_rounds(reader, cell, timed);
 }
@@ -478,7 +505,7 @@ static void take_line(Reader *reader, RtResults *results, const json_t *line) {
     const uint32_t candidate = rt_candidate_find(experiment, accel, workload);
     if (candidate > experiment->candidate_count) return;
     take_build(reader, line, results, workload, candidate);
-    if (of_cell) take_cell(reader, line, results, workload, rt_cell_at(results, workload, candidate, kind));
+    if (of_cell) take_cell(reader, line, results, workload, candidate, kind);
 }
 
 /* Whether a line is about a candidate that has a layer of one of `plugins` (experiment/plugins_used.h). */
@@ -609,10 +636,7 @@ static RtStatus check_build(const char *path, const json_t *header, const RtSele
 static RtStatus check_baseline(const char *path, const RtExperiment *experiment, json_t *changed,
                                RtError *error) {
     char sentence[RT_MAX_PLUGIN_CHANGE];
-    bool baseline = false;
-    for (uint32_t i = 0; i < experiment->baseline_count; i++)
-        baseline |= rt_plugins_concern(changed, experiment, experiment->baseline + i);
-    if (!baseline) return RT_OK;
+    if (!rt_plugins_concern(changed, experiment, experiment->baseline)) return RT_OK;
     format_change(changed, json_object_iter(changed), sentence);
     return rt_fail(
         error, RT_BAD_INPUT,

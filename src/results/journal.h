@@ -19,6 +19,7 @@ typedef enum RtEventKind {
     RT_EVENT_BUILD,        /* the build of `candidate` is known */
     RT_EVENT_COUNT,        /* the cell is counted */
     RT_EVENT_DISTRIBUTION, /* the cell has its distributions */
+    RT_EVENT_CHOICE,       /* the best-of has its choice */
     RT_EVENT_TIME,         /* the cell is timed */
     RT_EVENT_RENDER,       /* rendering with `candidate` is timed */
     RT_EVENT_NO_BUILD,     /* `candidate` is left out: it refuses the scene, took too long, or broke */

@@ -53,11 +53,34 @@ static void print_ratios(const RtResults *results, uint32_t least, uint32_t most
              "intervals.",
              rt_baseline_label(experiment), rounds, rt_plural(most), title);
     rt_print_wrapped(text, out);
-    if (experiment->baseline_count == 1) return;
-    snprintf(text, sizeof text,
-             "%s: the fastest of %" PRIu32 " settings for each kind of rays; the table shows it.",
-             experiment->best, experiment->baseline_count);
-    rt_print_wrapped(text, out);
+}
+
+/* "octree:best: octree-16 for primary and shadow rays; octree for diffuse rays." */
+static void print_choices(const RtResults *results, uint32_t t, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    for (uint32_t best = 0; best < experiment->candidate_count; best++) {
+        const RtCandidate *candidate = &experiment->candidates[best];
+        char text[RT_MAX_SENTENCE];
+        bool any = false;
+        snprintf(text, sizeof text, "%s, chosen by other rays:", candidate->label);
+        for (uint32_t i = 0; i < candidate->member_count; i++) {
+            const char *names[RT_RAY_KIND_COUNT];
+            char list[128];
+            uint32_t count = 0;
+            for (uint32_t k = 0; k < experiment->kind_count; k++) {
+                const RtCell *cell = rt_cell_at(results, t, best, experiment->kinds[k]);
+                if (cell->chosen && cell->choice == candidate->members[i])
+                    names[count++] = rt_experiment_kind_name(experiment, experiment->kinds[k]);
+            }
+            if (count == 0) continue;
+            rt_join_names(names, count, list, sizeof list);
+            rt_append_text(text, sizeof text, "%s %s (%s)", any ? "," : "",
+                           experiment->candidates[candidate->members[i]].label, list);
+            any = true;
+        }
+        rt_append_text(text, sizeof text, ".");
+        if (any) rt_print_wrapped(text, out);
+    }
 }
 
 /* Accelerators measured on a part of the rays: their ratios are not the quotients of the throughputs. */
@@ -129,32 +152,28 @@ static void print_differing(const RtResults *results, uint32_t t, FILE *out) {
 
 /* ---- rays that are learnt ---- */
 
-/* The cell of a kind of rays that repeats its rays most often, if they are learnt; else NULL. */
-static const RtCell *learnt_cell(const RtResults *results, uint32_t t, RtRayKind kind) {
-    const RtCell *learnt = NULL;
-    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
-        const RtCell *cell = rt_cell_at(results, t, c, kind);
-        const bool few = cell->timed && cell->tally.rays < RT_LEARNT_RAYS;
-        if (few && cell->repeats > (learnt ? learnt->repeats : RT_LEARNT_REPEATS)) learnt = cell;
-    }
-    return learnt;
-}
-
-/* The workload and its kinds: "on balls, 72 primary rays 12 times, 30 shadow rays 40 times"; false if none.
- */
+/* The workload and its kinds: "on balls, 72 primary rays (bvh 1.3), ..."; false if none. Of a kind, the
+ * accelerator whose rays are learnt most. */
 static bool say_learnt(const RtResults *results, uint32_t t, const char *before, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     bool any = false;
     for (uint32_t k = 0; results->workloads[t].known && k < experiment->kind_count; k++) {
-        const RtCell *cell = learnt_cell(results, t, experiment->kinds[k]);
-        if (!cell) continue;
+        const RtCell *most = NULL;
+        uint32_t accel = 0;
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            const RtCell *cell = rt_cell_at(results, t, c, experiment->kinds[k]);
+            if (!rt_cell_is_learnt(cell) || (most && cell->learnt <= most->learnt)) continue;
+            most = cell;
+            accel = c;
+        }
+        if (!most) continue;
         if (any)
             fputc(',', out);
         else
             fprintf(out, "%s on %s,", before, experiment->workloads[t].label);
-        fprintf(out, " %" PRIu64 " %s ray%s %.0f times", cell->tally.rays,
-                rt_experiment_kind_name(experiment, experiment->kinds[k]), rt_plural(cell->tally.rays),
-                cell->repeats);
+        fprintf(out, " %" PRIu64 " %s ray%s (%s %.2f times)", most->tally.rays,
+                rt_experiment_kind_name(experiment, experiment->kinds[k]), rt_plural(most->tally.rays),
+                rt_candidate_label(experiment, accel), most->learnt);
         any = true;
     }
     return any;
@@ -162,7 +181,7 @@ static bool say_learnt(const RtResults *results, uint32_t t, const char *before,
 
 char *rt_learnt_sentence(const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
-    const char *before = "Too few rays. Each round repeats,";
+    const char *before = "Too few rays. They take longer with other rays between their passes:";
     RtMemoryFile memory;
     RtError ignored;
     bool any = false;
@@ -171,8 +190,7 @@ char *rt_learnt_sentence(const RtResults *results) {
         any |= say_learnt(results, t, any ? ";" : before, memory.file);
     if (any)
         fprintf(memory.file,
-                ". Caches and branch predictors learn them, so they take less time than in a frame. %s, or "
-                "run them once per round (milliseconds: 0).",
+                ". Caches and branch predictors have learnt them, so the times are too short. %s.",
                 *experiment->rays_from ? "Give more rays" : "Record more (a larger size or limit)");
     return rt_memory_file_close(&memory, "a sentence", &ignored) == RT_OK ? memory.data : NULL;
 }
@@ -210,10 +228,10 @@ static void print_builds(const RtResults *results, uint32_t t, FILE *out) {
 static void print_break_even(const RtResults *results, uint32_t t, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     char part[RT_MAX_PART_TEXT], text[RT_MAX_SENTENCE];
-    if (experiment->kind_count < 2 || experiment->candidate_count < 2) return;
+    if (experiment->candidate_count < 2) return;
     rt_results_say_part(results, 1u << t, rt_experiment_kinds(experiment), part);
     snprintf(text, sizeof text, "Break-evens are over all kinds of rays together: %s.", part);
-    rt_print_wrapped(text, out);
+    if (experiment->kind_count > 1) rt_print_wrapped(text, out);
 }
 
 static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
@@ -222,6 +240,7 @@ static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     rt_print_wrapped("Object tests, extent tests and steps are per ray.", out);
     if (timed) print_ratios(results, least, most, out);
     print_rows(results, timed ? RT_CELLS : RT_COUNTED_CELLS, t, out);
+    print_choices(results, t, out);
     print_strides(results, t, timed, out);
     print_differing(results, t, out);
     print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
@@ -243,6 +262,7 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
             if (most > 0) print_ratios(results, least, most, out);
             explained |= most > 0;
             rt_table_text(&table, out);
+            print_choices(results, t, out);
             print_differing(results, t, out);
         }
     }
@@ -309,8 +329,9 @@ void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
     snprintf(out, RT_MAX_SENTENCE,
              "Null runs: %s is %s measured a second time, to show the noise; %" PRIu32 " of %" PRIu32
              " interval%s include%s 1",
-             experiment->again, experiment->candidates[experiment->baseline].label, null.straddling,
-             null.runs, rt_plural(null.runs), null.runs == 1 ? "s" : "");
+             experiment->again,
+             experiment->candidates[rt_candidate_built(experiment, experiment->candidate_count)].label,
+             null.straddling, null.runs, rt_plural(null.runs), null.runs == 1 ? "s" : "");
     if (misses == 0)
         rt_append_text(out, RT_MAX_SENTENCE, ", as expected.");
     else if (rt_binomial_tail(misses, null.runs, null.chance) >= 0.05)

@@ -39,10 +39,14 @@ static json_t *candidates_json(const RtExperiment *experiment) {
             if (candidate->excluded >> t & 1) continue;
             json_array_append_new(scenes, json_string(experiment->workloads[t].label));
         }
-        json_array_append_new(list,
-                              json_pack("{s:s, s:s, s:I, s:b, s:o}", "accel", candidate->label, "spec",
-                                        candidate->spec, "ray_stride", (json_int_t)candidate->ray_stride,
-                                        "missing", candidate->missing, "scenes", scenes));
+        json_t *entry = json_pack("{s:s, s:s, s:I, s:b, s:o}", "accel", candidate->label, "spec",
+                                  candidate->spec, "ray_stride", (json_int_t)candidate->ray_stride, "missing",
+                                  candidate->missing, "scenes", scenes);
+        json_t *members = candidate->member_count ? json_array() : NULL;
+        for (uint32_t i = 0; i < candidate->member_count; i++)
+            json_array_append_new(members, json_string(experiment->candidates[candidate->members[i]].label));
+        if (members) entry = rt_json_add(entry, "best_of", members);
+        json_array_append_new(list, entry);
     }
     return list;
 }

@@ -16,14 +16,18 @@ typedef RtResultRow Row;
 
 /* ---- fields ---- */
 
-/* The null run is the baseline once more. */
-static uint64_t ray_stride_of(const Row *r) {
+static const RtCandidate *candidate_of(const Row *r) {
     const RtExperiment *e = r->results->experiment;
-    return e->candidates[r->candidate < e->candidate_count ? r->candidate : e->baseline].ray_stride;
+    return &e->candidates[rt_candidate_built(e, r->candidate)];
+}
+
+static uint64_t ray_stride_of(const Row *r) {
+    return candidate_of(r)->ray_stride;
 }
 
 static RtField label_of(const Row *r) {
     RtField field = rt_field_text(rt_candidate_label(r->results->experiment, r->candidate));
+    if (candidate_of(r)->member_count > 0) field.note = r->build->spec;
     if (ray_stride_of(r) > 1) field.note = "measured on a part of the rays";
     return field;
 }
@@ -178,12 +182,17 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(builds, "builds", integer, "",                                                                         \
       "builds timed, after a warm-up; fewer than 6 have no interval of 95 %, one has none; 0: unknown",      \
       r->build->builds)                                                                                      \
+    X(build_threads, "build_threads", integer, "", "threads of the builds; 0: unknown", r->build->threads)   \
     X(bytes, "bytes", integer, "bytes", "memory of the structure's arrays", r->build->structure.bytes)       \
     X(threads, "threads", integer, "", "threads of the timing", threads_of(r))                               \
     X(rounds, "rounds", integer, "", "timing rounds", r->cell->rounds)                                       \
     X(repeats, "repeats", real6, "", "passes over the rays in a round", TIMED(r->cell->repeats))             \
     X(structures, "structures", integer, "",                                                                 \
       "structures built anew that its rounds timed in turns; 0: unknown", r->cell->structures)               \
+    X(learnt, "learnt", real6, "",                                                                           \
+      "time with other rays between its passes, over time without; above 1.05, caches and branch "           \
+      "predictors have learnt the rays; empty: not checked",                                                 \
+      TIMED(r->cell->learnt))                                                                                \
     X(coverage, "coverage", real6, "", "probability that an interval contains the median",                   \
       TIMED(rt_interval_coverage(r->cell->rounds)))                                                          \
     ESTIMATE(X, ns, "ns", "processor time per ray (wall time on several threads)", 1e9, r->cell->seconds)    \
@@ -305,7 +314,7 @@ enum {
 
 /* X(TABLE, what it is and has, which rows it has, its columns...) */
 #define TABLES(X)                                                                                            \
-    X(COUNTS, ALL_SCENES | SWEPT | REFUSED, (counted && r->build->counts) || refused,                        \
+    X(COUNTS, ALL_SCENES | SWEPT | REFUSED, !best && ((counted && r->build->counts) || refused),             \
       FROM_TO(scene, ray_stride), MEASURED(rays, rays),                                                      \
       {NULL, rt_tally_columns + 1, RT_TALLY_COUNTER_COUNT - 1, tally_of},                                    \
       {NULL, rt_structure_columns, RT_STRUCTURE_COUNTS, structure_of}, MEASURED(bytes, bytes),               \
@@ -315,14 +324,14 @@ enum {
       MEASURED(object_tests, differ),                                                                        \
       {NULL, rt_structure_columns + RT_STRUCTURE_COUNTS, RT_PREDICTION_COLUMNS, structure_of},               \
       MEASURED(host, cpu))                                                                                   \
-    X(ROUNDS, ALL_SCENES | SWEPT, timed && r->cell->round_times && r->round < r->cell->rounds, ONE(scene),   \
-      ONE(kind), ONE(accel), ONE(baseline), FROM_TO(round, round_baseline_ns))                               \
-    X(RENDERED, ALL_SCENES | SWEPT, r->build->render.known && r->kind == e->kinds[0],                        \
+    X(ROUNDS, ALL_SCENES | SWEPT, !best && timed && r->cell->round_times && r->round < r->cell->rounds,      \
+      ONE(scene), ONE(kind), ONE(accel), ONE(baseline), FROM_TO(round, round_baseline_ns))                   \
+    X(RENDERED, ALL_SCENES | SWEPT, !best && r->build->render.known && r->kind == e->kinds[0],               \
       FROM_TO(scene, objects), FROM_TO(width, depth), FROM_TO(accel, spec), ONE(threads),                    \
       FROM_TO(render_rounds, query_share_high), FROM_TO(host, cpu))                                          \
-    X(DISTRIBUTIONS, QUANTITIES, true, ONE(scene), ONE(kind), ONE(accel), ONE(quantity), ONE(spec),          \
+    X(DISTRIBUTIONS, QUANTITIES, !best, ONE(scene), ONE(kind), ONE(accel), ONE(quantity), ONE(spec),         \
       FROM_TO(count, max))                                                                                   \
-    X(HISTOGRAMS, QUANTITIES, true, ONE(scene), ONE(kind), ONE(accel), ONE(quantity), FROM_TO(low, part))    \
+    X(HISTOGRAMS, QUANTITIES, !best, ONE(scene), ONE(kind), ONE(accel), ONE(quantity), FROM_TO(low, part))   \
     X(BENCH, SWEPT, (counted && !null) || refused, FROM_TO(scene, scene_spec), FROM_TO(accel, ray_stride),   \
       ONE(kind), ONE(refused), MEASURED(rays, bytes),                                                        \
       {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},                               \
@@ -331,21 +340,23 @@ enum {
       MEASURED(threads, mrays_per_s), MEASURED(msteps_per_s, mtests_per_s), MEASURED(baseline, ratio_high))  \
     X(NULL_RUNS, 0, (timed && null), FROM_TO(scene, scene_spec), ONE(kind), FROM_TO(accel, spec), ONE(rays), \
       FROM_TO(build_seconds, straddles_1))                                                                   \
-    X(CELLS, 0, (counted || timed) && !is_lost(r, r->cell), FROM_TO(eye_label, interval))                    \
+    X(CELLS, 0, (counted || timed) && !is_tried(r, r->cell), FROM_TO(eye_label, interval))                   \
     X(STRUCTURES, 0, (first && is_shown(r)), ONE(eye_label), FROM_TO(build_ms, break_even))                  \
     X(COUNTED_CELLS, 0, counted, FROM_TO(eye_label, eye_steps))                                              \
     X(COUNTED_STRUCTURES, 0, (first && is_shown(r)), ONE(eye_label), ONE(mb),                                \
       {NULL, rt_structure_columns, RT_STRUCTURE_COUNTS, structure_of})                                       \
-    X(PERCENTILES, 0, r->cell->distributions && !isnan(r->cost.object_tests), ONE(eye_label),                \
+    X(PERCENTILES, 0, !best && r->cell->distributions && !isnan(r->cost.object_tests), ONE(eye_label),       \
       FROM_TO(tests_median, steps_most))                                                                     \
-    X(LEAF_PERCENTILES, 0, first && r->build->leaves, ONE(eye_label), FROM_TO(size_median, depth_most))      \
-    X(RENDER_ROWS, 0, (first && r->build->render.known), ONE(eye_label), FROM_TO(eye_render, eye_share))     \
-    X(CELLS_MORE, BEST, counted || timed, ONE(label), ONE(kind), ONE(rays),                                  \
+    X(LEAF_PERCENTILES, 0, first && !best && r->build->leaves, ONE(eye_label),                               \
+      FROM_TO(size_median, depth_most))                                                                      \
+    X(RENDER_ROWS, 0, (first && !best && r->build->render.known), ONE(eye_label),                            \
+      FROM_TO(eye_render, eye_share))                                                                        \
+    X(CELLS_MORE, BEST, (counted || timed) && !is_tried(r, r->cell), ONE(label), ONE(kind), ONE(rays),       \
       FROM_TO(tests_a_ray, steps_a_ray), ONE(ns_interval), FROM_TO(mrays, interval), ONE(min_ns),            \
       ONE(differ))                                                                                           \
-    X(TOTALS, ALL_KINDS | BEST, first && r->build->known, ONE(shown), ONE(rays),                             \
+    X(TOTALS, ALL_KINDS | BEST, first && has_total(r), ONE(shown), ONE(rays),                                \
       FROM_TO(tests_a_ray, ns_a_ray), FROM_TO(interval, break_even))                                         \
-    X(TOTALS_MORE, ALL_KINDS | BEST, first && r->build->known, ONE(label), ONE(rays),                        \
+    X(TOTALS_MORE, ALL_KINDS | BEST, first && has_total(r), ONE(label), ONE(rays),                           \
       FROM_TO(tests_a_ray, steps_a_ray), ONE(ns_interval), FROM_TO(interval, break_even))
 
 static const struct {
@@ -403,25 +414,33 @@ static bool find(Row *r, size_t i) {
     r->candidate = (uint32_t)(candidate % candidates);
     r->setup = &e->workloads[r->workload];
     r->scene = &r->results->workloads[r->workload];
-    r->build = rt_build_at(r->results, r->workload, r->candidate);
-    r->cell = rt_cell_at(r->results, r->workload, r->candidate, r->kind);
+    const uint32_t chosen =
+        has & ALL_KINDS ? r->candidate : rt_results_candidate(r->results, r->workload, r->candidate, r->kind);
+    r->build = rt_build_at(r->results, r->workload, chosen);
+    r->cell = rt_cell_at(r->results, r->workload, chosen, r->kind);
     return !(has & QUANTITIES) || find_quantity(r, i);
 }
 
-/* Whether the candidate is one of the baseline's, but not the fastest of them on these rays. */
-static bool is_lost(const Row *r, const RtCell *cell) {
-    return cell->timed && r->candidate < r->results->experiment->candidate_count &&
-           rt_candidate_is_baseline(r->results->experiment, r->candidate) && cell->baseline != r->candidate;
+/* Whether the candidate is only a member of a best-of, whose row shows what was chosen. */
+static bool is_tried(const Row *r, const RtCell *cell) {
+    return cell->timed && candidate_of(r)->tried && r->candidate < r->results->experiment->candidate_count;
 }
 
 /* Whether any cell of the candidate is shown. */
 static bool is_shown(const Row *r) {
+    if (candidate_of(r)->member_count > 0) return false;
     for (uint32_t k = 0; k < r->results->experiment->kind_count; k++) {
         const RtCell *cell =
             rt_cell_at(r->results, r->workload, r->candidate, r->results->experiment->kinds[k]);
-        if ((cell->counted || cell->timed) && !is_lost(r, cell)) return true;
+        if ((cell->counted || cell->timed) && !is_tried(r, cell)) return true;
     }
     return false;
+}
+
+/* Of a best-of each kind of rays has its own structure. */
+static bool has_total(const Row *r) {
+    return candidate_of(r)->member_count > 0 ? !isnan(r->cost.seconds.median)
+                                             : r->build->known && !candidate_of(r)->tried;
 }
 
 /* The kinds of rays that the costs of a row are of. */
@@ -435,6 +454,7 @@ static const void *row_at(void *context, size_t i) {
     const RtExperiment *e = r->results->experiment;
     const bool null = r->candidate == e->candidate_count, first = i < e->candidate_count;
     const bool counted = r->cell->counted, timed = r->cell->timed;
+    const bool best = candidate_of(r)->member_count > 0;
     const bool refused = !null && r->build->refused && !r->results->old_rows && r->scene->rays[r->kind] > 0;
     r->cost = rt_results_cost(r->results, r->workload, r->candidate, kinds_of(r));
     rt_candidate_show(e, r->candidate, r->shown);

@@ -66,33 +66,39 @@ double *rt_cell_round_times(const RtCell *cell, RtRoundTime which) {
 
 uint32_t rt_results_candidate(const RtResults *results, uint32_t workload, uint32_t candidate,
                               RtRayKind kind) {
-    if (candidate != RT_FASTEST_BASELINE) return candidate;
-    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
-        const RtCell *cell = rt_cell_at(results, workload, c, kind);
-        if (cell->timed) return cell->baseline;
+    const RtCell *cell = rt_cell_at(results, workload, candidate, kind);
+    return cell->chosen ? cell->choice : candidate;
+}
+
+bool rt_results_times(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
+    const RtExperiment *e = results->experiment;
+    bool timed = candidate == e->candidate_count || !e->candidates[candidate].tried;
+    for (uint32_t best = 0; best < e->candidate_count; best++) {
+        const RtCell *cell = rt_cell_at(results, workload, best, kind);
+        timed |= cell->chosen && cell->choice == candidate;
     }
-    return RT_FASTEST_BASELINE;
+    return timed;
+}
+
+bool rt_cell_is_learnt(const RtCell *cell) {
+    return cell->timed && cell->learnt > RT_LEARNT;
 }
 
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate) {
-    if (candidate == RT_FASTEST_BASELINE) return rt_baseline_label(experiment);
     return candidate < experiment->candidate_count ? experiment->candidates[candidate].label
                                                    : experiment->again;
 }
 
 void rt_candidate_show(const RtExperiment *experiment, uint32_t candidate, char out[RT_MAX_SHOWN]) {
     const bool null = candidate == experiment->candidate_count;
-    if (candidate == RT_FASTEST_BASELINE)
-        snprintf(out, RT_MAX_SHOWN, "%s", rt_baseline_label(experiment));
-    else
-        snprintf(out, RT_MAX_SHOWN, "%s%s",
-                 experiment->candidates[null ? experiment->baseline : candidate].shown,
-                 null ? " (again)" : "");
+    snprintf(out, RT_MAX_SHOWN, "%s%s",
+             experiment->candidates[rt_candidate_built(experiment, candidate)].shown, null ? " (again)" : "");
 }
 
 bool rt_results_next(const RtResults *results, RtCellCursor *at) {
     const RtExperiment *e = results->experiment;
-    const uint32_t i = at->next++;
+    uint32_t i = at->next++;
+    while (e->candidates[i / e->kind_count % e->candidate_count].member_count > 0) i = at->next++;
     at->kind = e->kinds[i % e->kind_count];
     at->candidate = i / e->kind_count % e->candidate_count;
     at->workload = i / e->kind_count / e->candidate_count;
@@ -129,17 +135,15 @@ void rt_results_leave_out(RtResults *results, uint32_t workload, uint32_t candid
     snprintf(build->left_out, sizeof build->left_out, "%s", why);
     build->refused = refused;
     build->broken = broken;
-    rt_spec_format(&e->candidates[candidate < e->candidate_count ? candidate : e->baseline].parsed,
-                   build->spec);
+    rt_spec_format(&e->candidates[rt_candidate_built(e, candidate)].parsed, build->spec);
 }
 
 bool rt_results_refused(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    const RtExperiment *e = results->experiment;
-    if (candidate != RT_FASTEST_BASELINE) return rt_build_at(results, workload, candidate)->refused;
-    for (uint32_t i = 0; i < e->baseline_count; i++) {
-        if (!rt_build_at(results, workload, e->baseline + i)->refused) return false;
-    }
-    return true;
+    const RtCandidate *best = &results->experiment->candidates[candidate];
+    bool all = best->member_count > 0 || rt_build_at(results, workload, candidate)->refused;
+    for (uint32_t i = 0; i < best->member_count; i++)
+        all &= rt_build_at(results, workload, best->members[i])->refused;
+    return all;
 }
 
 /* The first reason, if all accelerators of all known scenes refused them; NULL if not. */
@@ -212,13 +216,10 @@ static RtEstimate saved_by(const RtCell *cell) {
 }
 
 static RtCost cost_of_cell(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
-    static const RtBuildResult no_build = {0};
-    static const RtCell no_cell = {0};
     const RtEstimate none = rt_estimate_exactly((double)NAN);
     const uint32_t c = rt_results_candidate(results, workload, candidate, kind);
-    const bool known = c != RT_FASTEST_BASELINE;
-    const RtBuildResult *build = known ? rt_build_at(results, workload, c) : &no_build;
-    const RtCell *cell = known ? rt_cell_at(results, workload, c, kind) : &no_cell;
+    const RtBuildResult *build = rt_build_at(results, workload, c);
+    const RtCell *cell = rt_cell_at(results, workload, c, kind);
     return (RtCost){.whole = true,
                     .rays = cell->tally.rays,
                     .weight = 1,
@@ -333,11 +334,14 @@ RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, u
     const RtBuildResult *own = rt_build_at(results, workload, candidate), *baseline = NULL;
     RtBreakEven even = {.rays = rt_estimate_exactly(unknown)};
     const RtEstimate saved = rt_results_cost(results, workload, candidate, RT_ALL_RAYS).saved;
-    if (rt_candidate_is_baseline(results->experiment, candidate) || isnan(saved.median)) return even;
+    if (rt_candidate_is_baseline(results->experiment, candidate) || !own->known || isnan(saved.median))
+        return even;
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtCell *cell = rt_cell_at(results, workload, candidate, (RtRayKind)k);
         if (!cell->timed) continue;
         const RtBuildResult *build = rt_build_at(results, workload, cell->baseline);
+        const uint32_t threads = (uint32_t)cell->threads;
+        if (own->threads != threads || build->threads != threads) return even;
         if (!baseline || build->seconds.median < baseline->seconds.median) baseline = build;
     }
     const RtEstimate *a = &own->seconds, *b = &baseline->seconds,
@@ -356,9 +360,8 @@ typedef struct Sums {
 } Sums;
 
 static const RtCell *timed_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
-    c = rt_results_candidate(results, t, c, kind);
-    const RtCell *cell = c == RT_FASTEST_BASELINE ? NULL : rt_cell_at(results, t, c, kind);
-    return cell && cell->timed && cell->round_times ? cell : NULL;
+    const RtCell *cell = rt_cell_at(results, t, rt_results_candidate(results, t, c, kind), kind);
+    return cell->timed && cell->round_times ? cell : NULL;
 }
 
 /* Whether they were timed in the same rounds on the same rays: they have the same times of the baseline. */
@@ -418,7 +421,6 @@ static bool kept_ratio(const RtResults *results, uint32_t t, uint32_t over, uint
     if (kind == RT_ALL_RAYS) return false;
     over = rt_results_candidate(results, t, over, kind);
     under = rt_results_candidate(results, t, under, kind);
-    if (over == RT_FASTEST_BASELINE || under == RT_FASTEST_BASELINE) return false;
     const RtCell *own = rt_cell_at(results, t, over, kind), *its = rt_cell_at(results, t, under, kind);
     if (!own->timed || !its->timed) return false;
     *ratio = its->ratio;
@@ -450,7 +452,8 @@ RtEstimate rt_results_time_ratio(const RtResults *results, uint32_t workload, ui
 /* What candidates are compared by; NAN if it is unknown. */
 static double compared_cost(bool time, const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
     const RtExperiment *e = results->experiment;
-    if (c >= e->candidate_count || strcmp(e->candidates[c].spec, rt_accel_yardstick()) == 0)
+    if (c >= e->candidate_count || e->candidates[c].tried ||
+        strcmp(e->candidates[c].spec, rt_accel_yardstick()) == 0)
         return (double)NAN;
     const RtCost cost = rt_results_cost(results, t, c, kind);
     return time ? cost.seconds.median : cost.object_tests;

@@ -46,6 +46,7 @@ typedef struct RtBuildResult {
     bool known, exact, counts;    /* as in RtAccel */
     char spec[RT_MAX_SPEC_CHARS]; /* every effective parameter */
     uint32_t builds;              /* timed; 0: unknown, from the journal of an older version */
+    uint32_t threads;             /* of the build; 0: unknown, likewise */
     RtEstimate seconds;           /* to build it; of fewer than two builds low = median = high */
     /* Why no cell of it is measured: the structure's reason if it was `refused`, the time it would take, or
      * the message of a `broken` plugin; or "". */
@@ -71,20 +72,24 @@ typedef struct RtCell {
     bool counted, timed;
     /* Why it is not measured: the limit that it would exceed, or the message of a `broken` plugin; or "". */
     char left_out[RT_MAX_LEFT_OUT];
-    bool broken;                   /* a plugin's fault */
+    bool broken; /* a plugin's fault */
+    bool chosen; /* of a best-of: `choice`, a member, is the fastest on other rays */
+    uint32_t choice;
     RtTally tally;                 /* tally.rays: of the thinned set */
     uint64_t differ;               /* answers that differ from the reference's; 0 for exact accelerators */
     RtDistribution *distributions; /* [RT_RAY_QUANTITY_COUNT] owned; NULL: not asked for */
     uint32_t rounds;
     double repeats;      /* passes over the rays in a round; NAN: unknown, as in older journals */
     uint32_t structures; /* built anew and timed in turns; 0: unknown, from an older journal */
+    double learnt;       /* time with other rays between its passes, over time without (rt_measure_learning);
+                            NAN: not checked */
     int threads;         /* of the timing */
     uint32_t machine;    /* that timed it, in RtResults.machines */
     RtEstimate seconds;  /* per ray: processor time on one thread, wall time on several */
     RtEstimate wall;     /* per ray, by the wall clock */
     RtEstimate ratio;    /* of throughput to the baseline's on the same rays, paired by round */
     double *round_times; /* [RT_ROUND_TIME_COUNT][rounds] owned; NULL: not kept */
-    uint32_t baseline;   /* its candidate: of several the fastest on these rays */
+    uint32_t baseline;   /* its candidate: of a best-of the choice for these rays */
 } RtCell;
 
 typedef struct RtResults {
@@ -113,24 +118,24 @@ RtCell *rt_cell_at(const RtResults *results, uint32_t workload, uint32_t candida
 RtStatus rt_cell_make_round_times(RtCell *cell, RtError *error);
 double *rt_cell_round_times(const RtCell *cell, RtRoundTime which);
 
-/* Stands for the baseline that ratios refer to, the fastest of several on the rays of each cell. */
-#define RT_FASTEST_BASELINE UINT32_MAX
-
-/* The candidate that stands for `candidate` on these rays: itself; for RT_FASTEST_BASELINE the baseline,
- * or RT_FASTEST_BASELINE where nothing was timed. */
+/* The candidate that stands for `candidate` on these rays: itself; for a best-of the chosen member, if one is
+ * chosen. */
 uint32_t rt_results_candidate(const RtResults *results, uint32_t workload, uint32_t candidate,
                               RtRayKind kind);
 
-/* The candidate's label; for the null run the baseline's and " (again)"; for RT_FASTEST_BASELINE
- * rt_baseline_label. */
+/* Whether the cell is timed when it is measured: that of a member that is only tried is where it is chosen.
+ */
+bool rt_results_times(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
+
+/* The candidate's label; for the null run the baseline's and " (again)". */
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate);
 
 /* The same for a screen (RtWorkload.shown). */
 #define RT_MAX_SHOWN (RT_MAX_LABEL + 8)
 void rt_candidate_show(const RtExperiment *experiment, uint32_t candidate, char out[RT_MAX_SHOWN]);
 
-/* Every cell of the experiment except null runs, scene by scene, accelerator by accelerator:
- *     for (RtCellCursor at = {0}; rt_results_next(results, &at);) use(at.cell); */
+/* Every cell of the experiment except null runs and those of best-ofs, scene by scene, accelerator by
+ * accelerator: for (RtCellCursor at = {0}; rt_results_next(results, &at);) use(at.cell); */
 typedef struct RtCellCursor {
     uint32_t next, workload, candidate;
     RtRayKind kind;
@@ -138,12 +143,11 @@ typedef struct RtCellCursor {
 } RtCellCursor;
 bool rt_results_next(const RtResults *results, RtCellCursor *at);
 
-/* Fewer rays than this, repeated more often than that within a round, take less time than they would among
- * the rays of a frame: branch predictors and caches have learnt them. A ray depends on tens of branches and
- * reads tens of cache lines; predictors and second-level caches hold some ten thousand. experiments/README.md
- * shows the effect. */
-#define RT_LEARNT_RAYS    1024
-#define RT_LEARNT_REPEATS 4
+/* Branch predictors and caches learn a small set of rays that is traced again and again; it then takes less
+ * time than among the rays of a frame. Whether they have learnt the cell's: other rays between its passes
+ * slow it down by more than 5 %. */
+#define RT_LEARNT 1.05
+bool rt_cell_is_learnt(const RtCell *cell);
 
 /* The number of measured cells, and of their scenes. */
 uint64_t rt_results_size(const RtResults *results, uint32_t *scenes);
@@ -152,7 +156,7 @@ uint64_t rt_results_size(const RtResults *results, uint32_t *scenes);
  * scenes. */
 RtStatus rt_results_check(const RtResults *results, RtError *error);
 
-/* Whether the candidate was refused on the workload; of several baselines, whether all were. */
+/* Whether the candidate was refused on the workload; of a best-of, whether all its members were. */
 bool rt_results_refused(const RtResults *results, uint32_t workload, uint32_t candidate);
 
 /* Notes why a candidate is left out of a workload: as in RtBuildResult. */
@@ -190,8 +194,7 @@ typedef struct RtCost {
 } RtCost;
 
 /* The cost of a ray: of one kind, or of all kinds of the experiment together (RT_ALL_RAYS), each with its
- * weight; all candidates of a workload use the kinds that any of them was measured on. `candidate` may be
- * RT_FASTEST_BASELINE. */
+ * weight; all candidates of a workload use the kinds that any of them was measured on. */
 RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
 
 /* The total of the whole sets of several kinds: the cost of a ray of each times its weight. */
@@ -200,7 +203,8 @@ RtCost rt_results_total(const RtResults *results, uint32_t workload, uint32_t ca
 /* The break-even with the baseline: the number of rays, of all kinds by their weights, from which
  * on a candidate takes less time than the baseline, builds included (of several baselines the shortest
  * build); or up to which, if it builds faster and traces slower. The interval follows from the ends of those
- * of builds, ratios and times, and so is conservative. Assumes builds on as many threads as the timing. */
+ * of builds, ratios and times, and so is conservative. Unknown unless all were built and timed on the same
+ * number of threads, and of a best-of, which has a structure for each kind of rays. */
 typedef struct RtBreakEven {
     bool up_to;      /* faster for at most so many rays; else for at least so many */
     RtEstimate rays; /* each 0..INFINITY; NAN: unknown, or the baseline itself. `least` is NAN */
@@ -227,14 +231,14 @@ RtEstimate rt_results_time(const RtResults *results, uint32_t workload, uint32_t
 
 /* The time of `over` relative to that of `under`, likewise. Where nothing can be paired, because there are no
  * times of rounds or no common baseline, the quotient of both estimates, with those of the intervals' ends.
- * Both may be RT_FASTEST_BASELINE. */
+ */
 RtEstimate rt_results_time_ratio(const RtResults *results, uint32_t workload, uint32_t over, uint32_t under,
                                  RtRayKind kind, double coverage);
 
 /* Compares a candidate with all others of the workload, for one kind of rays or RT_ALL_RAYS: by time if
  * anything was timed, else by object tests per ray. No other is faster than the best by the medians of paired
- * ratios; one whose ratio to the best has 1 in its interval is level with it. Null runs and
- * the yardstick (rt_accel_yardstick) are not compared. */
+ * ratios; one whose ratio to the best has 1 in its interval is level with it. Null runs, members that only a
+ * best-of tries, and the yardstick (rt_accel_yardstick) are not compared. */
 RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
 
 /* The same by time, or by object tests, whatever was timed. */

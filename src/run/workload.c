@@ -26,12 +26,30 @@ static bool is_asked(const RtWorkloadState *workload, uint32_t c, RtRayKind kind
     return rt_selection_has(&workload->options->only, workload->experiment, workload->index, c, kind);
 }
 
+/* Whether a best-of that has members to choose from has not chosen yet. */
+static bool must_choose(const RtWorkloadState *workload, uint32_t best, RtRayKind kind) {
+    const RtCandidate *candidate = &workload->experiment->candidates[best];
+    const RtResults *results = workload->results;
+    bool any = false;
+    for (uint32_t i = 0; i < candidate->member_count; i++) {
+        const uint32_t c = candidate->members[i];
+        any |= is_asked(workload, c, kind) && rt_workload_runs(workload, c) &&
+               !*rt_cell_at(results, workload->index, c, kind)->left_out;
+    }
+    return any && !rt_cell_at(results, workload->index, best, kind)->chosen;
+}
+
 static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
+    for (uint32_t c = 0; c < workload->experiment->candidate_count && !workload->count_only; c++) {
+        if (must_choose(workload, c, kind)) return false;
+    }
     for (uint32_t c = 0; c < workload->count; c++) {
         const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         bool null = c == workload->experiment->candidate_count;
         if (!is_asked(workload, c, kind) || !rt_workload_runs(workload, c) || *cell->left_out) continue;
-        if ((!cell->counted && !null) || (!cell->timed && !workload->count_only)) return false;
+        const bool times =
+            !workload->count_only && rt_results_times(workload->results, workload->index, c, kind);
+        if ((!cell->counted && !null) || (!cell->timed && times)) return false;
         if (workload->distributions && !cell->distributions && !null) return false;
     }
     return true;
@@ -79,47 +97,88 @@ RtStatus rt_workload_open(RtResults *results, uint32_t index, const RtWorkloadOp
 /* ---- the rays ---- */
 
 /* Keeps at most `limit` rays of each kind that the experiment asks for. */
-static RtStatus keep_sets(const RtExperiment *experiment, const RtScene *scene, const RtRaySet *recorded,
-                          RtRaySet *sets, uint64_t *whole_rays, RtError *error) {
+static RtStatus keep_sets(const RtExperiment *experiment, const RtScene *scene, uint64_t limit,
+                          const RtRaySet *recorded, RtRaySet *sets, uint64_t *whole_rays, RtError *error) {
     const uint64_t samples = (uint64_t)scene->sampling.columns * scene->sampling.rows;
     for (uint32_t k = 0; k < experiment->kind_count; k++) {
         RtRayKind kind = experiment->kinds[k];
         whole_rays[kind] = kind == RT_RAY_RANDOM ? samples : recorded[kind].count;
-        RT_TRY(rt_rayset_limit(&recorded[kind], experiment->limit, experiment->coherent_run, &sets[kind],
-                               error));
+        RT_TRY(rt_rayset_limit(&recorded[kind], limit, experiment->coherent_run, &sets[kind], error));
     }
     return RT_OK;
 }
 
-RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int threads, RtScene *scene,
-                            RtAccel **reference, RtRaySet *sets, uint64_t *whole_rays, RtError *error) {
+/* `other`: those of the next seed, at the other places of pixels. */
+static RtStatus record(const RtExperiment *experiment, uint32_t index, int threads, bool other,
+                       const RtAccel *reference, RtScene *scene, RtRaySet *sets, uint64_t *whole_rays,
+                       RtError *error) {
     const RtWorkload *setup = &experiment->workloads[index];
+    const uint64_t limit =
+        other && experiment->limit > RT_LEARNABLE_RAYS ? RT_LEARNABLE_RAYS : experiment->limit;
     RtRecording recording = {.depth = setup->depth,
-                             .seed = experiment->seed,
-                             .random = experiment->limit,
+                             .seed = experiment->seed + other,
+                             .random = limit,
                              .threads = threads,
                              .light_from_outside = setup->light_from_outside};
     RtRaySet recorded[RT_RAY_KIND_COUNT] = {0};
     for (uint32_t k = 0; k < experiment->kind_count; k++) recording.kinds |= 1u << experiment->kinds[k];
-    RT_TRY(rt_scene_sample(scene, setup->width, setup->height, 1, setup->corners, error));
-    RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, reference, error));
-    if (*experiment->rays_from) {
-        RtRayKind kind = experiment->kinds[0];
-        RT_TRY(rt_rays_load(experiment->rays_from, kind, &sets[kind], error));
-        whole_rays[kind] = sets[kind].count;
-        return RT_OK;
-    }
-    RtStatus status = rt_rayset_record(recorded, *reference, &recording, error);
-    if (status == RT_OK) status = keep_sets(experiment, scene, recorded, sets, whole_rays, error);
+    RT_TRY(rt_scene_sample(scene, setup->width, setup->height, 1, setup->corners != other, error));
+    RtStatus status = rt_rayset_record(recorded, reference, &recording, error);
+    if (status == RT_OK) status = keep_sets(experiment, scene, limit, recorded, sets, whole_rays, error);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&recorded[k]);
     return status;
+}
+
+static bool has_best(const RtExperiment *experiment) {
+    bool any = false;
+    for (uint32_t c = 0; c < experiment->candidate_count; c++)
+        any |= experiment->candidates[c].member_count > 0;
+    return any;
+}
+
+/* Moves every second coherent run of the set to `other`. */
+static RtStatus divide(RtRaySet *set, uint64_t run, RtRaySet *other, RtError *error) {
+    const uint64_t all = set->count;
+    RT_TRY(rt_rayset_init(other, set->kind, all, error));
+    set->count = other->count = 0;
+    for (uint64_t i = 0; i < all; i++) {
+        RtRaySet *to = i / run % 2 ? other : set;
+        to->rays[to->count++] = set->rays[i];
+    }
+    rt_rayset_seal(set);
+    rt_rayset_seal(other);
+    return RT_OK;
+}
+
+/* What is measured does not depend on whether times are taken. */
+static RtStatus load_rays(const RtExperiment *experiment, RtRaySet *sets, RtRaySet *others,
+                          uint64_t *whole_rays, RtError *error) {
+    const RtRayKind kind = experiment->kinds[0];
+    RT_OWNED(RtRaySet, unused, rt_rayset_clear);
+    RT_TRY(rt_rays_load(experiment->rays_from, kind, &sets[kind], error));
+    whole_rays[kind] = sets[kind].count;
+    if (!has_best(experiment)) return RT_OK;
+    return divide(&sets[kind], experiment->coherent_run, others ? &others[kind] : &unused, error);
+}
+
+RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int threads, RtScene *scene,
+                            RtAccel **reference, RtRaySet *sets, RtRaySet *others, uint64_t *whole_rays,
+                            RtError *error) {
+    const RtWorkload *setup = &experiment->workloads[index];
+    uint64_t ignored[RT_RAY_KIND_COUNT];
+    RT_TRY(rt_scene_sample(scene, setup->width, setup->height, 1, setup->corners, error));
+    RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, reference, error));
+    if (*experiment->rays_from) return load_rays(experiment, sets, others, whole_rays, error);
+    if (others) RT_TRY(record(experiment, index, threads, true, *reference, scene, others, ignored, error));
+    return record(experiment, index, threads, false, *reference, scene, sets, whole_rays, error);
 }
 
 /* Records the rays; fills the workload's part of the results, or compares it with the previous run's. */
 static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
     uint64_t whole_rays[RT_RAY_KIND_COUNT] = {0};
     RT_TRY(rt_workload_record(workload->experiment, workload->index, workload->options->threads,
-                              workload->scene, &workload->reference, workload->sets, whole_rays, error));
+                              workload->scene, &workload->reference, workload->sets,
+                              workload->count_only ? NULL : workload->others, whole_rays, error));
     RtWorkloadResult *result = &workload->results->workloads[workload->index];
     RtWorkloadResult now = {.known = true,
                             .objects = workload->scene->geometry.object_count,
@@ -166,7 +225,8 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
     if (status == RT_OK && workload->options->timer) {
         status = workload->options->timer(workload->options->timer_context, workload, kind, error);
     } else if (status == RT_OK && !workload->count_only) {
-        status = rt_workload_time(workload, kind, error);
+        status = rt_workload_choose(workload, kind, error);
+        if (status == RT_OK) status = rt_workload_time(workload, kind, error);
     }
     rt_free(workload->answers);
     workload->answers = NULL;
@@ -301,7 +361,10 @@ RtStatus rt_workload_measure(RtResults *results, uint32_t index, const RtWorkloa
     RtStatus status = measure(&workload, error);
     for (uint32_t c = 0; c < workload.count; c++) rt_workload_destroy(&workload, c);
     rt_accel_destroy(workload.reference);
-    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&workload.sets[k]);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        rt_rayset_clear(&workload.sets[k]);
+        rt_rayset_clear(&workload.others[k]);
+    }
     return status;
 }
 

@@ -13,11 +13,20 @@
 /* Seconds for building a structure anew in each round of timing, if tracing takes no longer. */
 #define RT_RENEWAL_BUDGET 0.05
 
+/* A best-of chooses by other rays than those it is measured on: of the same scene, recorded with the next
+ * seed at pixel corners in place of centres, or at centres in place of corners; in a file of rays every
+ * second coherent run. So many of a kind at most. */
+#define RT_CHOICE_RAYS 20000
+
+/* A smaller set is timed again with other rays between its passes: it may be learnt (rt_measure_learning). */
+#define RT_LEARNABLE_RAYS 65536
+
 struct RtWorkloadState; /* run/workload_state.h */
 
 typedef struct RtWorkloadOptions {
-    int threads;     /* for recording, building and counting; 0 = all processors; changes no count */
-    int timing;      /* threads for timing, usually 1 */
+    int threads;     /* for recording, counting and builds that are not timed; 0 = all processors; changes no
+                        count */
+    int timing;      /* threads for timed builds and rays, usually those of the experiment */
     bool count_only; /* no timing */
     RtSelection only;
     double until;    /* rounds continue until all intervals of ratios are within this part of their medians:
@@ -41,10 +50,12 @@ typedef struct RtWorkloadOptions {
  * file, if the experiment names one. At most the experiment's limit of each of its kinds, to
  * sets[RT_RAY_KIND_COUNT]; the size of each whole set, before the limit, to whole_rays[RT_RAY_KIND_COUNT].
  * There could be any number of random rays: their whole set has one for each sample of the frame, so that it
- * does not depend on the limit either. *reference is the exact accelerator that recorded them. Destroy and
- * clear both, also after a failure. */
+ * does not depend on the limit either. others[RT_RAY_KIND_COUNT], or NULL, gets as many other rays, but at
+ * most RT_LEARNABLE_RAYS. *reference is the exact accelerator that recorded them. Destroy and clear all, also
+ * after a failure. */
 RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int threads, RtScene *scene,
-                            RtAccel **reference, RtRaySet *sets, uint64_t *whole_rays, RtError *error);
+                            RtAccel **reference, RtRaySet *sets, RtRaySet *others, uint64_t *whole_rays,
+                            RtError *error);
 
 /* Whether all results of workload number `index` are known. */
 bool rt_workload_is_done(RtResults *results, uint32_t index, const RtWorkloadOptions *options);

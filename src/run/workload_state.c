@@ -9,12 +9,15 @@
  * timing builds them anew for its rounds, each behind a block of random size. */
 #include "run/workload_state.h"
 
+#include "core/base/parallel.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c) {
-    return rt_candidate_runs(workload->experiment, c, workload->index) &&
+    return rt_workload_setup(workload, c)->member_count == 0 &&
+           rt_candidate_runs(workload->experiment, c, workload->index) &&
            rt_selection_has(&workload->options->only, workload->experiment, workload->index, c,
                             RT_ALL_RAYS) &&
            !*rt_build_at(workload->results, workload->index, c)->left_out;
@@ -49,7 +52,7 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
                   : refused ? "refused: "
                             : "left out: ",
                   text);
-    if (!null && refused && rt_results_refused(workload->results, workload->index, RT_FASTEST_BASELINE) &&
+    if (!null && refused && rt_results_refused(workload->results, workload->index, experiment->baseline) &&
         rt_candidate_is_baseline(experiment, c))
         rt_notify(&workload->options->observer, "%s: without the baseline '%s' there are no ratios", scene,
                   rt_baseline_label(experiment));
@@ -110,13 +113,21 @@ static RtEstimate estimate_of(const Builds *builds, uint32_t *count) {
     return rt_estimate(builds->seconds, *count);
 }
 
+static bool times_builds(const RtWorkloadState *workload) {
+    return !workload->count_only && !workload->options->timer;
+}
+
+static int build_threads(const RtWorkloadState *workload) {
+    return times_builds(workload) ? workload->options->timing : workload->options->threads;
+}
+
 /* Builds a structure in place of the one before. */
 static RtStatus build_limited(RtWorkloadState *workload, uint32_t c, RtError *error) {
     rt_accel_destroy(workload->built[c]);
     workload->built[c] = NULL;
     rt_memory_limit(workload->experiment->limit_bytes);
     return rt_memory_unlimit(rt_accel_build(&rt_workload_setup(workload, c)->parsed, workload->scene,
-                                            workload->options->threads, &workload->built[c], error),
+                                            build_threads(workload), &workload->built[c], error),
                              error);
 }
 
@@ -212,6 +223,7 @@ static RtStatus keep_result(const Builds *builds, RtError *error) {
     if (!accel || result->known) return RT_OK;
     *result = (RtBuildResult){.known = true, .exact = accel->exact, .counts = accel->counts};
     result->seconds = estimate_of(builds, &result->builds);
+    result->threads = (uint32_t)rt_thread_count(build_threads(workload));
     rt_spec_format(&rt_workload_setup(workload, builds->candidate)->parsed, result->spec);
     rt_accel_describe(accel, &result->structure);
     if (workload->distributions) RT_TRY(distribute_leaves(accel, result, error));
@@ -221,7 +233,7 @@ static RtStatus keep_result(const Builds *builds, RtError *error) {
 RtStatus rt_workload_build(RtWorkloadState *workload, RtError *error) {
     RT_ARENA(arena);
     const RtExperiment *experiment = workload->experiment;
-    const bool timed = !workload->count_only && !workload->options->timer;
+    const bool timed = times_builds(workload);
     Builds *all = rt_arena_alloc(&arena, workload->count, sizeof(Builds));
     RT_TRY(rt_arena_check(&arena, "build times", error));
     size_t count = 0;

@@ -25,17 +25,19 @@ typedef struct RtWorkloadState {
     RtAccel *built[RT_MAX_MEASURED];      /* [count], NULL for one that does not run here */
     RtAccel *accels[RT_MAX_MEASURED];     /* [count], those that trace the current kind of rays, or NULL */
     void *displacements[RT_MAX_MEASURED]; /* [count] blocks in front of structures, or NULL */
-    RtRaySet sets[RT_RAY_KIND_COUNT]; /* the current one is followed by its thinned shares and the probe */
+    RtRaySet sets[RT_RAY_KIND_COUNT];   /* the current one is followed by its thinned shares and the probe */
+    RtRaySet others[RT_RAY_KIND_COUNT]; /* to choose by, and to trace between passes; empty if nothing is
+                                           timed */
     RtWorkloadShare shares[RT_MAX_MEASURED]; /* [count], of the current kind */
     RtWorkloadShare probe;                   /* the part of the set that predicts times */
     RtHit *answers;                          /* for the set of the current kind and what follows it */
     uint64_t answer_count;
 } RtWorkloadState;
 
-/* The candidate that is built: itself, or the baseline for the null run. */
+/* The candidate that is built for this one (rt_candidate_built). */
 static inline const RtCandidate *rt_workload_setup(const RtWorkloadState *workload, uint32_t candidate) {
     const RtExperiment *e = workload->experiment;
-    return &e->candidates[candidate < e->candidate_count ? candidate : e->baseline];
+    return &e->candidates[rt_candidate_built(e, candidate)];
 }
 
 /* Notifies the observer. */
@@ -82,6 +84,10 @@ RtStatus rt_workload_teach(const RtWorkloadState *workload, RtRayKind kind, RtAc
 
 /* Counts all candidates on their shares of the rays of one kind, and distributions if they are requested. */
 RtStatus rt_workload_count(RtWorkloadState *workload, RtRayKind kind, RtError *error);
+
+/* Lets each best-of choose one of its members by their times on other rays of that kind; members that are
+ * only tried, and not chosen, do not trace the current rays any more. */
+RtStatus rt_workload_choose(RtWorkloadState *workload, RtRayKind kind, RtError *error);
 
 /* Times all candidates on their shares of the rays of one kind. */
 RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *error);

@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Each candidate is timed on its share, and the baseline (with all settings of a best-of) on every thinned
- * share, so that ratios compare times on the same rays. */
+/* Each candidate is timed on its share, and the baseline on every thinned share, so that ratios compare times
+ * on the same rays. */
 typedef struct TimingRun {
     RtWorkloadState *workload;
     RtRayKind kind;
@@ -23,14 +23,12 @@ typedef struct TimingRun {
     uint32_t *candidates;  /* [count] */
     RtArena memory;        /* of these */
     RtRandom random;
-    double credit[RT_MAX_MEASURED];       /* [workload->count] seconds that may be spent on building */
-    uint32_t renewed;                     /* rounds after which that was done */
-    uint32_t structures[RT_MAX_MEASURED]; /* [workload->count] timed so far */
-    uint32_t place[RT_MAX_MEASURED];      /* [workload->count] index of a candidate in `timed` */
-    uint32_t baselines[RT_MAX_CANDIDATES],
-        baseline_count; /* those that did not refuse the scene; may be none */
-    /* [workload->count] of the first candidate of the baseline on its rays; others follow */
-    uint32_t baseline_entry[RT_MAX_MEASURED];
+    double credit[RT_MAX_MEASURED];           /* [workload->count] seconds that may be spent on building */
+    uint32_t renewed;                         /* rounds after which that was done */
+    uint32_t structures[RT_MAX_MEASURED];     /* [workload->count] timed so far */
+    uint32_t place[RT_MAX_MEASURED];          /* [workload->count] index of a candidate in `timed` */
+    bool has_baseline;                        /* it did not refuse the scene */
+    uint32_t baseline_entry[RT_MAX_MEASURED]; /* [workload->count] that of the baseline on its rays */
 } TimingRun;
 
 static uint32_t enter(TimingRun *run, uint32_t candidate, const RtRaySet *set) {
@@ -44,37 +42,41 @@ static uint32_t enter(TimingRun *run, uint32_t candidate, const RtRaySet *set) {
     return run->count++;
 }
 
-/* Clear its memory also after a failure. */
-static RtStatus timing_run_init(TimingRun *run, RtWorkloadState *workload, RtRayKind kind, RtError *error) {
-    const uint32_t baselines = workload->experiment->baseline_count;
-    const uint32_t rounds = workload->options->until > 0 ? RT_MAX_ROUNDS : workload->experiment->rounds;
-    size_t most = (1 + (size_t)baselines) * workload->count, doubles = 2 * most * rounds;
+/* The baseline on the rays of `candidate`; the null run is compared with the setting that it repeats. */
+static uint32_t baseline_of(const RtWorkloadState *workload, uint32_t candidate, RtRayKind kind) {
+    const RtExperiment *experiment = workload->experiment;
+    if (candidate == experiment->candidate_count) return rt_candidate_built(experiment, candidate);
+    return rt_results_candidate(workload->results, workload->index, experiment->baseline, kind);
+}
+
+/* Makes room for `most` entries of so many rounds. Clear its memory also after a failure. */
+static RtStatus timing_run_init(TimingRun *run, RtWorkloadState *workload, RtRayKind kind, uint32_t most,
+                                uint32_t rounds, RtError *error) {
     *run = (TimingRun){.workload = workload,
                        .kind = kind,
                        .most = rounds,
                        .start = rt_wall_seconds(),
                        .random = rt_random(workload->experiment->seed, 2 + (uint64_t)kind)};
     run->timed = rt_arena_alloc(&run->memory, most, sizeof(RtTimed));
-    run->seconds = rt_arena_alloc(&run->memory, doubles, sizeof(double));
+    run->seconds = rt_arena_alloc(&run->memory, 2 * (size_t)most * rounds, sizeof(double));
     run->broken = rt_arena_alloc(&run->memory, most, sizeof(bool));
     run->candidates = rt_arena_alloc(&run->memory, most, sizeof(uint32_t));
-    RT_TRY(rt_arena_check(&run->memory, "times", error));
+    return rt_arena_check(&run->memory, "times", error);
+}
+
+static void enter_all(TimingRun *run) {
+    const RtWorkloadState *workload = run->workload;
     for (uint32_t c = 0; c < workload->count; c++) {
         run->structures[c] = 1;
         if (workload->accels[c]) run->place[c] = enter(run, c, &workload->shares[c].set);
     }
-    for (uint32_t i = 0; i < baselines; i++) {
-        const uint32_t c = workload->experiment->baseline + i;
-        if (workload->accels[c]) run->baselines[run->baseline_count++] = c;
+    run->has_baseline = workload->accels[baseline_of(workload, 0, run->kind)] != NULL;
+    for (uint32_t c = 0; c < workload->count && run->has_baseline; c++) {
+        const uint32_t baseline = baseline_of(workload, c, run->kind);
+        run->baseline_entry[c] = run->place[baseline];
+        if (workload->accels[c] && rt_workload_setup(workload, c)->ray_stride > 1)
+            run->baseline_entry[c] = enter(run, baseline, &workload->shares[c].set);
     }
-    for (uint32_t c = 0; c < workload->count && run->baseline_count > 0; c++) {
-        run->baseline_entry[c] = run->place[run->baselines[0]];
-        if (!workload->accels[c] || rt_workload_setup(workload, c)->ray_stride == 1) continue;
-        run->baseline_entry[c] = run->count;
-        for (uint32_t i = 0; i < run->baseline_count; i++)
-            enter(run, run->baselines[i], &workload->shares[c].set);
-    }
-    return RT_OK;
 }
 
 /* ---- structures built anew ---- */
@@ -119,45 +121,15 @@ static RtStatus renew(void *context, RtTimed *timed, size_t count, RtError *erro
     return RT_OK;
 }
 
-/* The median part of baselines[i] in the time that baselines[0..count) take in a round: paired, as ratios
- * are, so that drift cancels. */
-static double part_of_round(const RtTimed *baselines, uint32_t count, uint32_t i, uint32_t rounds) {
-    double part[RT_MAX_ROUNDS];
-    for (uint32_t r = 0; r < rounds; r++) {
-        double all = 0;
-        for (uint32_t k = 0; k < count; k++) all += baselines[k].seconds[r];
-        part[r] = baselines[i].seconds[r] / all;
-    }
-    return rt_median(part, rounds);
-}
-
-/* The baseline's fastest setting on the rays of `candidate`. Choosing it by the same times as the ratios can
- * only favour the baseline. The null run is compared with the setting that it repeats. */
-static uint32_t pick_baseline(const TimingRun *run, uint32_t candidate) {
-    const RtExperiment *experiment = run->workload->experiment;
-    const RtTimed *baselines = &run->timed[run->baseline_entry[candidate]];
-    uint32_t best = 0, count = run->baseline_count;
-    if (candidate == experiment->candidate_count) return 0;
-    double least = INFINITY;
-    for (uint32_t i = 0; i < count; i++) {
-        double part = part_of_round(baselines, count, i, run->rounds);
-        if (part < least) {
-            least = part;
-            best = i;
-        }
-    }
-    return best;
-}
-
 /* ---- until the intervals are narrow ---- */
 
 /* The width of the widest interval of a ratio (rt_estimate_width), and whose it is. */
 static double widest_of(const TimingRun *run, uint32_t *candidate) {
     double widest = 0;
     *candidate = 0;
-    for (uint32_t c = 0; c < run->workload->count && run->baseline_count > 0; c++) {
+    for (uint32_t c = 0; c < run->workload->count && run->has_baseline; c++) {
         if (!run->workload->accels[c] || run->broken[run->place[c]]) continue;
-        const RtTimed *baseline = &run->timed[run->baseline_entry[c] + pick_baseline(run, c)];
+        const RtTimed *baseline = &run->timed[run->baseline_entry[c]];
         RtEstimate ratio =
             rt_estimate_ratio(baseline->seconds, run->timed[run->place[c]].seconds, run->rounds);
         double width = rt_estimate_width(&ratio);
@@ -200,15 +172,40 @@ static void compare_times(const TimingRun *run, uint32_t c, RtCell *cell) {
     const RtTimed *own = &run->timed[run->place[c]];
     double *times = rt_cell_round_times(cell, RT_ROUND_BASELINE);
     cell->ratio = rt_estimate_exactly((double)NAN);
-    cell->baseline = run->workload->experiment->baseline;
+    cell->baseline = baseline_of(run->workload, c, run->kind);
     for (uint32_t r = 0; r < run->rounds; r++) times[r] = (double)NAN;
-    if (run->baseline_count == 0) return;
-    const uint32_t best = pick_baseline(run, c);
-    const RtTimed *baseline = &run->timed[run->baseline_entry[c] + best];
+    if (!run->has_baseline) return;
+    const RtTimed *baseline = &run->timed[run->baseline_entry[c]];
     memcpy(times, baseline->seconds, run->rounds * sizeof(double));
     cell->ratio = rt_estimate_ratio(baseline->seconds, own->seconds, run->rounds);
-    cell->baseline = run->baselines[best];
 }
+
+/* ---- rays that are learnt ---- */
+
+/* Sets as large are not learnt, and rounds of one pass have other accelerators' rays between them. */
+static bool may_learn(const RtTimed *timed) {
+    for (const RtAccel *layer = timed->accel; layer; layer = layer->below) {
+        if (layer->ops->learn || layer->ops->remote) return false; /* it knows the rays; it is elsewhere */
+    }
+    return timed->set->count < RT_LEARNABLE_RAYS && timed->repeats > 1;
+}
+
+static RtStatus check_learning(TimingRun *run, RtError *error) {
+    RtWorkloadState *workload = run->workload;
+    for (uint32_t c = 0; c < workload->count; c++) {
+        RtCell *cell = rt_cell_at(workload->results, workload->index, c, run->kind);
+        const RtRaySet *others = &workload->others[run->kind];
+        if (!workload->accels[c] || cell->timed) continue;
+        cell->learnt = (double)NAN;
+        if (!may_learn(&run->timed[run->place[c]]) || others->count == 0 || run->broken[run->place[c]])
+            continue;
+        RT_TRY(
+            rt_measure_learning(workload->accels[c], &workload->shares[c].set, others, &cell->learnt, error));
+    }
+    return RT_OK;
+}
+
+/* ---- what is kept ---- */
 
 static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const TimingRun *run, RtError *error) {
     const RtMachine here = rt_machine_here();
@@ -248,7 +245,8 @@ static RtStatus exclude_broken(RtWorkloadState *workload, RtRayKind kind, RtErro
 RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     const RtExperiment *experiment = workload->experiment;
     TimingRun run;
-    RtStatus status = timing_run_init(&run, workload, kind, error);
+    const uint32_t rounds = workload->options->until > 0 ? RT_MAX_ROUNDS : experiment->rounds;
+    RtStatus status = timing_run_init(&run, workload, kind, 2 * workload->count, rounds, error);
     RtTiming timing = {.rounds = {.rounds = experiment->rounds,
                                   .most = run.most,
                                   .least = 1e-3 * experiment->milliseconds,
@@ -257,10 +255,72 @@ RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *er
                                   .context = &run},
                        .renew = renew,
                        .threads = workload->options->timing};
+    if (status == RT_OK) enter_all(&run);
     if (status == RT_OK) status = rt_measure_time(run.timed, run.count, &timing, &run.rounds, error);
     if (status == RT_OK) status = exclude_broken(workload, kind, error);
     if (status == RT_OK) report_width(&run);
+    if (status == RT_OK) status = check_learning(&run, error);
     if (status == RT_OK) status = keep_times(workload, kind, &run, error);
     rt_arena_clear(&run.memory);
     return status;
+}
+
+/* ---- the best of several ---- */
+
+/* Rounds and seconds that choose among settings; with six rounds an interval spans all of them. */
+enum { CHOICE_ROUNDS = 6 };
+static const double choice_seconds = 5e-3;
+
+/* Chooses among the members of a best-of by their times on `set`: the fastest by the median of paired ratios;
+ * but the default, if the interval of its ratio to that contains 1. */
+static uint32_t choose_fastest(const TimingRun *run) {
+    uint32_t best = 0;
+    for (uint32_t i = 1; i < run->count; i++) {
+        if (run->broken[i]) continue;
+        const RtEstimate gain =
+            rt_estimate_ratio(run->timed[best].seconds, run->timed[i].seconds, run->rounds);
+        if (run->broken[best] || gain.median > 1) best = i;
+    }
+    if (run->broken[0]) return run->candidates[best];
+    const RtEstimate gain = rt_estimate_ratio(run->timed[0].seconds, run->timed[best].seconds, run->rounds);
+    return run->candidates[gain.low > 1 ? best : 0];
+}
+
+static RtStatus choose(RtWorkloadState *workload, uint32_t best, RtRayKind kind, RtError *error) {
+    const RtCandidate *candidate = &workload->experiment->candidates[best];
+    RtCell *cell = rt_cell_at(workload->results, workload->index, best, kind);
+    TimingRun run;
+    RT_OWNED(RtRaySet, set, rt_rayset_clear);
+    RT_TRY(rt_rayset_limit(&workload->others[kind], 1 + RT_CHOICE_RAYS / candidate->ray_stride,
+                           workload->experiment->coherent_run, &set, error));
+    RtStatus status = timing_run_init(&run, workload, kind, candidate->member_count, CHOICE_ROUNDS, error);
+    for (uint32_t i = 0; status == RT_OK && i < candidate->member_count; i++) {
+        if (workload->accels[candidate->members[i]]) enter(&run, candidate->members[i], &set);
+    }
+    RtTiming timing = {.rounds = {.rounds = CHOICE_ROUNDS,
+                                  .most = CHOICE_ROUNDS,
+                                  .least = choice_seconds,
+                                  .seed = workload->experiment->seed + (uint64_t)kind},
+                       .threads = workload->options->timing};
+    if (status == RT_OK && run.count > 1 && set.count > 0)
+        status = rt_measure_time(run.timed, run.count, &timing, &run.rounds, error);
+    if (status == RT_OK && run.count > 0) {
+        cell->chosen = true;
+        cell->choice = run.rounds > 0 ? choose_fastest(&run) : run.candidates[0];
+        status = rt_workload_tell(workload, RT_EVENT_CHOICE, best, kind, error);
+    }
+    rt_arena_clear(&run.memory);
+    return status;
+}
+
+RtStatus rt_workload_choose(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    for (uint32_t c = 0; c < workload->experiment->candidate_count; c++) {
+        const bool best = workload->experiment->candidates[c].member_count > 0;
+        if (best && !rt_cell_at(workload->results, workload->index, c, kind)->chosen)
+            RT_TRY(choose(workload, c, kind, error));
+    }
+    for (uint32_t c = 0; c < workload->count; c++) {
+        if (!rt_results_times(workload->results, workload->index, c, kind)) workload->accels[c] = NULL;
+    }
+    return RT_OK;
 }

@@ -94,7 +94,7 @@ RT_TEST(every_name_stands_for_different_specs_that_can_be_built) {
         for (size_t b = 0; b < ops->best_count; b++) {
             char text[RT_MAX_NAME * 2];
             size_t count = 0, all = 0;
-            snprintf(text, sizeof text, "%s:%s", ops->name, ops->bests[b].name);
+            snprintf(text, sizeof text, "%s:%s%s", ops->name, ops->bests[b].name, ops->kinds ? "+brute" : "");
             assert_true(rt_best_is(text));
             assert_ok(rt_best_specs(text, specs, &count, &all, error));
             assert_true(count > 0 && count <= all && all <= RT_MAX_BEST);
@@ -124,12 +124,42 @@ RT_TEST(the_best_of_embree_is_of_all_queries_and_one_of_single_rays) {
     for (size_t i = 0; i < one; i++) assert_non_null(strstr(specs[i], "query=1,"));
 }
 
+/* The default wins where others are not certainly faster, so it must be among them; Embree's default is the
+ * widest instruction set, whichever that is. */
+RT_TEST(the_first_setting_of_the_best_is_the_default) {
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        const RtAccelOps *ops = rt_accel_at(i);
+        char whole[2][RT_MAX_SPEC_CHARS], text[RT_MAX_NAME * 2];
+        const char *below = ops->kinds ? "+brute" : "";
+        size_t count, all;
+        if (ops->best_count != 1) continue;
+        snprintf(text, sizeof text, "%s:best%s", ops->name, below);
+        assert_ok(rt_best_specs(text, specs, &count, &all, error));
+        assert_in_range(all, 2, 8);
+        snprintf(text, sizeof text, "%s%s", ops->name, below);
+        for (int k = 0; k < 2; k++) {
+            RtSpec spec;
+            assert_ok(rt_spec_parse(k == 0 ? specs[0] : text, &spec, error));
+            rt_spec_format(&spec, whole[k]);
+        }
+        assert_string_equal(whole[0], whole[1]);
+    }
+}
+
+RT_TEST(a_layer_of_a_spec_may_be_the_best_of_several) {
+    size_t count, all;
+    assert_ok(rt_best_specs("cache+grid:best", specs, &count, &all, error));
+    assert_string_equal(specs[0], "cache+grid:density=4,depth=1");
+    assert_ok(rt_best_specs("light:best+wide", specs, &count, &all, error));
+    assert_string_equal(specs[1], "light:cells=256+wide");
+}
+
 RT_TEST(what_is_no_such_name_is_refused) {
-    static const char *const none[] = {"bvh", "bvh:", ":best", "bvh:build=sweep", "light+bvh:best"};
+    static const char *const none[] = {"bvh", "bvh:", ":best", "bvh:build=sweep", "light+bvh:"};
     size_t count = 0, all = 0;
     for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) assert_false(rt_best_is(none[i]));
-    assert_true(rt_best_is("bvh:best"));
-    assert_bad_input(rt_best_specs("bvh:best", specs, &count, &all, error), "'bvh:best'");
+    assert_true(rt_best_is("brute:best"));
+    assert_bad_input(rt_best_specs("brute:best", specs, &count, &all, error), "'brute:best'");
     assert_bad_input(rt_best_specs("gird:best", specs, &count, &all, error), "did you mean 'grid'");
 }
 

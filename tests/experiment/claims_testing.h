@@ -12,6 +12,13 @@
 static RtExperiment *e;
 static RtResults results;
 
+/* Empty results of the experiment as it is now. */
+static inline void start_results(void) {
+    rt_results_clear(&results);
+    assert_ok(rt_results_init(&results, e, error));
+    for (uint32_t t = 0; t < 4; t++) results.workloads[t].rays[0] = results.workloads[t].rays[1] = 1000;
+}
+
 static inline int set_up(void **state) {
     (void)state;
     RtCandidate bvh = {.spec = "bvh", .ray_stride = 1},
@@ -28,8 +35,7 @@ static inline int set_up(void **state) {
     assert_ok(rt_experiment_add_accels(e, &bvh, error));
     assert_ok(rt_experiment_add_accels(e, &grid, error));
     assert_ok(rt_experiment_check(e, where, error));
-    assert_ok(rt_results_init(&results, e, error));
-    for (uint32_t t = 0; t < 4; t++) results.workloads[t].rays[0] = results.workloads[t].rays[1] = 1000;
+    start_results();
     return 0;
 }
 

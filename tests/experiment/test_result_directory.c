@@ -107,30 +107,23 @@ PLACE_TEST(run_and_bench_thin_a_set_to_the_same_rays) {
     assert_ends(place, "reproduce results/thin", 1, "differs from the new counts");
 }
 
-static int occurrences(const Place *place, const char *name, const char *what) {
-    OWNED_MEMORY char *text = read_in(place, name);
-    return count_of(text, what);
-}
-
-PLACE_TEST(a_few_rays_that_are_repeated_until_they_are_learnt_cause_a_warning) {
-    const char *warning = "Too few rays. Each round repeats, on balls:size=1, 72 primary rays";
+/* Times depend on the machine: the mark is put into the journal. */
+PLACE_TEST(rays_that_are_learnt_are_marked_and_cause_a_warning) {
+    const char *warning = "with other rays between their passes: on balls:size=1, 72 primary rays (";
+    char command[256];
     write_changed(place, "short.yaml", small_experiment, "count_only: yes", "rounds: 2\nmilliseconds: 1");
     assert_runs(place, "run short.yaml");
-    assert_in_file(place, "output", "; on cloud, ");
-    assert_int_equal(occurrences(place, "output", "Too few rays"), 1);
-    assert_int_equal(occurrences(place, "results/small/report.html", "Too few rays"), 1);
-    assert_in_file(place, "results/small/report.html", warning);
-    assert_in_file(place, "results/small/times.csv", ",rounds,repeats,");
-    assert_runs(place, "report results/small"); /* from the journal */
+    assert_in_file(place, "results/small/times.csv", ",structures,learnt,");
+    snprintf(command, sizeof command,
+             "cd '%s' && sed -Ei 's/\"learnt\":[^,]+,/\"learnt\":1.3,/' results/small/cells.jsonl",
+             place->folder);
+    assert_int_equal(system(command), 0);
+    assert_runs(place, "report results/small");
     assert_in_file(place, "results/small/report.html", warning);
     write_changed(place, "once.yaml", small_experiment, "count_only: yes", "rounds: 2\nmilliseconds: 0");
-    assert_runs(place, "run once.yaml --force");
+    assert_runs(place, "run once.yaml --force"); /* one pass a round: other rays lie between */
     assert_not_in_file(place, "output", "Too few rays");
     assert_not_in_file(place, "results/small/report.html", "Too few rays");
-    assert_runs(place, "bench balls:size=1 --accel bvh --rays primary --size 10x10 --rounds 2");
-    assert_in_file(place, "output", "Too few rays");
-    assert_runs(place, "bench balls:size=1 --accel bvh --rays primary --size 10x10 --milliseconds 0");
-    assert_not_in_file(place, "output", "Too few rays");
 }
 
 PLACE_TEST(a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_manifest) {
