@@ -46,10 +46,10 @@ do for [f = 1:2] {
   set key at screen 0.335 + 0.4825 * (f - 1), screen 0.92 left top Left reverse textcolor rgb ink samplen 1.2 title "exponent" left
   if (f == 1) { set ylabel "time to build, ns per object" textcolor rgb ink } else { unset ylabel }
   # brute only copies the list of objects: it is no structure
-  plot for [a = 2:n_accels] "times.csv" using (known[(f - 1) * n_accels + a] ? own(f, a) * side(a) : NaN): \
+  plot for [a = 2:n_accels] "times.csv" using (known[(f - 1) * n_accels + a] > 0 ? own(f, a) * side(a) : NaN): \
       (column("build_seconds") / column("objects") * 1e9):(column("build_low") / column("objects") * 1e9): \
       (column("build_high") / column("objects") * 1e9) with yerrorlines linewidth 1.4 dashtype dash(a) pointtype marker(a) pointsize 0.7 \
-    linecolor rgb color(a) title (known[(f - 1) * n_accels + a] ? sprintf("%.2f  %s", built[(f - 1) * n_accels + a], word(accels, a)) : "")
+    linecolor rgb color(a) title (known[(f - 1) * n_accels + a] > 0 ? sprintf("%.2f  %s", built[(f - 1) * n_accels + a], word(accels, a)) : "")
 }
 unset multiplot
 unset output
@@ -61,9 +61,9 @@ do for [k = 1:n_kinds] {
   set title word(kinds, k)." rays" font ",13" textcolor rgb ink
   set key at screen 0.305 + 0.475 * (k - 1), screen 0.9 left top Left reverse samplen 1.2 spacing 0.95 textcolor rgb ink title "exponent" left
   if (k == 1) { set ylabel "time, ns per ray" textcolor rgb ink } else { unset ylabel }
-  plot for [a = 1:n_accels] "times.csv" using (known[a] ? ray(1, a, k) : NaN):(column("ns")):(column("ns_low")):(column("ns_high")) \
+  plot for [a = 1:n_accels] "times.csv" using (known[a] > 0 ? ray(1, a, k) : NaN):(column("ns")):(column("ns_low")):(column("ns_high")) \
     with yerrorlines linewidth 1.6 dashtype dash(a) pointtype marker(a) pointsize 0.6 linecolor rgb color(a) \
-    title (known[a] ? sprintf("%.2f  %s", traced[(a - 1) * n_kinds + k], word(accels, a)) : "")
+    title (known[a] > 0 ? sprintf("%.2f  %s", traced[(a - 1) * n_kinds + k], word(accels, a)) : "")
 }
 unset multiplot
 unset output
