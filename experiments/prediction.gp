@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# prediction: time per ray over the expected cost of the structure, a panel per kind of rays.
+# prediction: time per ray over the expected cost of the structure, a panel per kind of rays; and over what tests and steps cost.
 #: 1-cost: Time per ray over the expected cost, both over the least of the scene and family, one panel per kind of rays.
 #:   A color for each family of structures, a marker for each scene. Logarithmic axes; on the line they grow alike.
+#: 2-time: Measured nanoseconds per ray, over those from times of a ray, a test and a step, one marker per scene.
+#:   The times were fitted to the same structure on all other scenes. Both axes logarithmic.
 
 families = "bvh grid octree"
 n_families = words(families); n_scenes = words(scenes); n_kinds = words(kinds)
@@ -38,4 +40,46 @@ do for [k = 1:n_kinds] {
          (column("ns") / least_time[cell(f, s, k)]) with points pointtype mark(s) pointsize 0.6 linecolor rgb hue(f) notitle
 }
 unset multiplot
+unset output
+
+# ---- time from tests and steps: constants are fitted to the same structure on the other scenes ----
+
+n_accels = words(accels)
+other(s, a) = strcol("accel") eq word(accels, a) && strcol("scene") ne word(scenes, s)
+own(s, a) = strcol("accel") eq word(accels, a) && strcol("scene") eq word(scenes, s)
+per_ray(name) = column(name) / column("rays")
+f(x, y) = p * p + q * q * x + r * r * y # none is less than nothing
+set fit quiet nolog
+unset logscale; set autoscale # a fit leaves out what lies beyond
+array base_ns[n_scenes * n_accels]; array test_ns[|base_ns|]; array step_ns[|base_ns|]
+do for [s = 1:n_scenes] { do for [a = 1:n_accels] {
+  i = (s - 1) * n_accels + a
+  base_ns[i] = NaN
+  stats "times.csv" using (own(s, a) && column("ns") > 0 ? 1 : 0) nooutput
+  if (STATS_max > 0) {
+    p = 5; q = 3; r = 2
+    fit f(x, y) "times.csv" using (other(s, a) ? per_ray("object_tests") : NaN):(per_ray("steps")):(column("ns")):(column("ns")) zerror via p, q, r
+    base_ns[i] = p * p; test_ns[i] = q * q; step_ns[i] = r * r
+  }
+} }
+
+eval canvas("2-time", 960, 500)
+set multiplot
+set logscale xy
+set grid xtics ytics
+set format "10^{%T}"
+set xrange [10 : 200000]; set yrange [10 : 200000]
+set lmargin at screen 0.085; set rmargin at screen 0.51; set tmargin at screen 0.95; set bmargin at screen 0.12
+set xlabel "ns per ray by times of a ray, a test and a step" textcolor rgb ink
+set ylabel "ns per ray, measured" textcolor rgb ink
+set key at screen 0.54, screen 0.95 left top vertical maxrows n_scenes Left reverse samplen 0.5 textcolor rgb ink
+unset title
+plot x with lines linecolor rgb soft notitle, \
+     for [s = 1:n_scenes] NaN with points pointtype mark(s) pointsize 0.7 linecolor rgb hue(s) title word(scenes, s), \
+     for [s = 1:n_scenes] for [a = 1:n_accels] "times.csv" using (own(s, a) ? (i = (s - 1) * n_accels + a, \
+         base_ns[i] + test_ns[i] * per_ray("object_tests") + step_ns[i] * per_ray("steps")) : NaN):(column("ns")) \
+       with points pointtype mark(s) pointsize 0.55 linecolor rgb hue(s) notitle
+unset multiplot
+set format "%g"
+unset key
 unset output

@@ -36,7 +36,7 @@ set logscale xy
 set grid xtics ytics
 set format x "10^{%T}"
 set format y "10^{%T}"
-set xrange [600 : 2e6]
+set xrange [60 : 2e6]
 set xlabel "objects" textcolor rgb ink
 eval canvas("1-build", 960, 480)
 set multiplot layout 1, 2 margins screen 0.08, 0.81, 0.13, 0.92 spacing screen 0.235, 0.1
@@ -45,8 +45,8 @@ do for [f = 1:2] {
   set title word(families, f) font ",13" textcolor rgb ink
   set key at screen 0.335 + 0.4825 * (f - 1), screen 0.92 left top Left reverse textcolor rgb ink samplen 1.2 title "exponent" left
   if (f == 1) { set ylabel "time to build, ns per object" textcolor rgb ink } else { unset ylabel }
-  # brute only copies the list of objects: it is no structure
-  plot for [a = 2:n_accels] "times.csv" using (known[(f - 1) * n_accels + a] > 0 ? own(f, a) * side(a) : NaN): \
+  # brute and extents only copy the list of objects: they are no structures
+  plot for [a = 3:n_accels] "times.csv" using (known[(f - 1) * n_accels + a] > 0 ? own(f, a) * side(a) : NaN): \
       (column("build_seconds") / column("objects") * 1e9):(column("build_low") / column("objects") * 1e9): \
       (column("build_high") / column("objects") * 1e9) with yerrorlines linewidth 1.4 dashtype dash(a) pointtype marker(a) pointsize 0.7 \
     linecolor rgb color(a) title (known[(f - 1) * n_accels + a] > 0 ? sprintf("%.2f  %s", built[(f - 1) * n_accels + a], word(accels, a)) : "")
