@@ -8,39 +8,41 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 list=tests/verify/faults.tsv
 
-# faults SETTING SCENE... -- [OPTION...]: the faults of its wrong answers, as "lost beside"; "none" without any
-faults() {
-    local said setting=$1
-    shift
-    said=$("$program" verify --accel "$setting" --rays 5000 --out "$work/out" --force "$@" 2>"$work/err" || true)
-    grep -q ' have a certain answer' <<<"$said" || complain "$setting has no verdict: $(tail -n 2 "$work/err")"
-    sed -n 's/^.* have a certain answer.*; wrong: //p' <<<"$said" | tr -d '0-9,'
-}
-
-# listed SETTING [OPTION...]
+# listed "SETTING..." [OPTION...]: all in one run, for which rays are judged certain once
 listed() {
-    local fault
-    for fault in $(faults "$@"); do
-        awk -F '\t' -v s="$1" -v f="$fault" '$1 == s && $2 == f { found = 1 } END { exit !found }' "$list" ||
-            complain "$1: wrong answers with the fault '$fault', which $list does not list"
+    local setting fault settings=$1
+    shift
+    # shellcheck disable=SC2086
+    "$program" verify $(printf -- '--accel %s ' $settings) --rays 5000 --json --out "$work/out" --force "$@" >"$work/rows" 2>"$work/err" || true
+    # Lines "SETTING FAULT"; the fault "judged" where an answer was certain.
+    awk -F '[":, ]+' '$2 == "accel" { setting = $0; sub(/^.*: "/, "", setting); sub(/",$/, "", setting) }
+        $2 == "faults" { within = 1; next } /}/ { within = 0 }
+        within && $3 > 0 { print setting, $2 }
+        $2 == "certain" && $3 > 0 { print setting, "judged" }' "$work/rows" | sort -u >"$work/faults"
+    for setting in $settings; do
+        grep -qxF "$setting judged" "$work/faults" || complain "$setting has no verdict: $(tail -n 2 "$work/err")"
     done
+    while read -r setting fault; do
+        [ "$fault" = judged ] || awk -F '\t' -v s="$setting" -v f="$fault" '$1 == s && $2 == f { found = 1 } END { exit !found }' "$list" ||
+            complain "$setting: wrong answers with the fault '$fault', which $list does not list"
+    done <"$work/faults"
 }
 
 if "$program" accels embree >/dev/null 2>&1; then
+    settings=
     for setting in $(sed -n 's/^\(embree[^\t]*\)\t.*/\1/p' "$list" | sort -u); do
         case $("$program" bench random:n=1 --size 4x4 --accel "$setting" --count-only 2>&1) in
         *"not in Embree 4"*) continue ;;
         esac
-        listed "$setting"
+        settings+=" $setting"
     done
+    listed "$settings"
 else
     echo "check_verdicts: built without Embree: its faults are not looked for" >&2
 fi
 for plugin in "$@"; do
     name=$(basename "$plugin" .so)
-    for setting in "$name" $(sed -n "s/^\($name:[^\t]*\)\t.*/\1/p" "$list" | sort -u); do
-        listed "$setting" triangles --plugin "$plugin"
-    done
+    listed "$name $(sed -n "s/^\($name:[^\t]*\)\t.*/\1/p" "$list" | sort -u)" triangles --plugin "$plugin"
 done
 
 # ---- undecided is no success ----

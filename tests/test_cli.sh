@@ -297,7 +297,7 @@ refuses "'grd': did you mean 'grid'" $bench --accel grd
 refuses "'bhv': did you mean 'bvh'" $bench --accel bhv
 refuses "'embree:best' .*--baseline embree:best|without Embree" $bench --accel embree:best
 refuses 'bvh.*used twice: leave one out' $bench --accel bvh --accel bvh
-refuses "'bvh:best' is neither a spec" $bench --accel bvh --baseline bvh:best
+refuses "'brute:best' is neither a spec" $bench --accel bvh --baseline brute:best
 refuses "no ray kind 'sideways'.*primary" $bench --accel bvh --rays sideways
 refuses 'primary.*twice' $bench --accel bvh --rays primary,primary
 refuses 'rounds.*1\.\.1000' $bench --accel bvh --rounds 1000000000

@@ -6,7 +6,6 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/table.h"
-#include "results/result_tables.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -36,9 +35,9 @@ static RtClaimVerdict worse(RtClaimVerdict a, RtClaimVerdict b) {
 }
 
 static double in_units(const RtClaim *claim, double value) {
-    bool time =
-        claim->measure == RT_CLAIM_TIME && (claim->form == RT_CLAIM_VALUE || claim->form == RT_CLAIM_TREND);
-    return time ? 1e9 * value : value;
+    const bool own = claim->form == RT_CLAIM_VALUE || claim->form == RT_CLAIM_TREND;
+    if (claim->format.scale != 0) return claim->format.scale * value + claim->format.offset;
+    return own && claim->first.measure == RT_CLAIM_TIME ? 1e9 * value : value;
 }
 
 static bool compares(const RtClaim *claim, double value) {
@@ -55,10 +54,11 @@ static RtClaimVerdict compare(const RtClaim *claim, double low, double high) {
 static RtClaimVerdict step_of(const RtClaimCase *judge, const RtClaimPoint *one, const RtClaimPoint *next) {
     const RtClaim *claim = judge->claim;
     RtEstimate before = one->y, after = next->y;
-    if (claim->measure == RT_CLAIM_TIME && one->workload == next->workload) {
+    const RtClaimMeasure measure = claim->first.measure;
+    const bool timed = measure == RT_CLAIM_TIME || measure == RT_CLAIM_FRAME_TIME;
+    if (timed && one->at.workload == next->at.workload) {
         before = rt_estimate_exactly(1);
-        after = rt_results_time_ratio(judge->results, one->workload, next->candidate, one->candidate,
-                                      one->kind, judge->coverage);
+        after = rt_claim_ratio(judge, measure, &next->at, measure, &one->at);
     }
     const RtEstimate *from = &before, *to = &after;
     const RtEstimate *less = claim->rises ? from : to, *more = claim->rises ? to : from;
@@ -121,7 +121,8 @@ static void judge_figure(const RtClaimCase *judge, Figure *figure) {
     } else if (claim->form == RT_CLAIM_CROSSOVER) {
         judge_crossover(claim, figure);
     } else {
-        figure->value = claim->form == RT_CLAIM_EXPONENT
+        figure->value = claim->mean ? rt_claim_mean(figure->points, figure->count)
+                        : claim->form == RT_CLAIM_EXPONENT
                             ? rt_claim_exponent(figure->points, figure->count, &figure->error)
                         : claim->form == RT_CLAIM_CORRELATION
                             ? rt_claim_correlation(figure->points, figure->count)
@@ -134,59 +135,85 @@ static void judge_figure(const RtClaimCase *judge, Figure *figure) {
 
 /* ---- texts ---- */
 
-#define PUT(result, ...) rt_append_text((result)->figures, RT_MAX_CLAIM_FIGURES, __VA_ARGS__)
+static RtClaimResult no_figure(RtClaimVerdict verdict, const char *why) {
+    RtClaimResult result = {.verdict = verdict, .value = "unknown"};
+    rt_append_text(result.figures, RT_MAX_CLAIM_FIGURES, "%s", why);
+    return result;
+}
 
-static const char *const units[] = {
-#define UNIT(CONSTANT, name, unit) unit,
-    RT_CLAIM_MEASURES(UNIT)
-#undef UNIT
-};
+#define PUT(result, ...) rt_append_text((result)->figures, RT_MAX_CLAIM_FIGURES, __VA_ARGS__)
 
 static void put_number(RtClaimResult *result, const RtClaim *claim, double value) {
     char text[16];
-    const bool never = isinf(value) && claim->measure == RT_CLAIM_BREAK_EVEN && claim->form != RT_CLAIM_RATIO;
+    const bool never =
+        isinf(value) && claim->first.measure == RT_CLAIM_BREAK_EVEN && claim->form != RT_CLAIM_RATIO;
     rt_format_figure(in_units(claim, value), text);
     PUT(result, "%s", never ? "never" : text);
 }
 
 static void put_estimate(RtClaimResult *result, const RtClaim *claim, const RtEstimate *b) {
     char text[RT_MAX_FIELD];
+    const double low = in_units(claim, b->low), high = in_units(claim, b->high);
     if (isnan(b->median)) {
         PUT(result, "unknown");
-    } else if (b->low == b->high) {
+    } else if (b->low == b->high || claim->format.plain) {
         put_number(result, claim, b->median);
     } else {
-        rt_format_interval(in_units(claim, b->median), in_units(claim, b->low), in_units(claim, b->high),
-                           text);
+        rt_format_interval(in_units(claim, b->median), fmin(low, high), fmax(low, high), text);
         PUT(result, "%s", text);
     }
 }
 
-/* Both labels; of a line without the parameter. */
-static void put_place(RtClaimResult *result, const RtExperiment *experiment, const RtClaim *claim,
-                      const RtClaimPoint *point) {
+static void put_unit(RtClaimResult *result, const RtClaim *claim) {
+    if (!claim->readout || claim->form > RT_CLAIM_LEAST) return;
+    PUT(result, "%s",
+        claim->format.unit              ? claim->format.unit
+        : claim->form == RT_CLAIM_VALUE ? rt_claim_measure_unit(claim->first.measure)
+                                        : "");
+}
+
+/* "grid on bunny, primary rays": what figures of several cells do not have in common is left out. */
+static void put_cell(RtClaimResult *result, const RtExperiment *experiment, const RtClaim *claim,
+                     const RtClaimCell *cell, bool kind) {
     const bool line = claim->form >= RT_CLAIM_EXPONENT && !claim->by_objects;
-    const RtWorkload *workload = &experiment->workloads[point->workload];
-    const bool kind = claim->each_kind && experiment->kind_count > 1;
-    const char *kind_name = kind ? rt_experiment_kind_name(experiment, point->kind) : "";
-    if (claim->form == RT_CLAIM_CORRELATION) {
-        if (kind) PUT(result, " (%s rays)", kind_name);
-        return;
-    }
-    if (line && !claim->key.scene) {
-        const RtCandidate *candidate = &experiment->candidates[point->candidate];
-        PUT(result, " (%s", candidate->stem);
+    const bool correlation = claim->form == RT_CLAIM_CORRELATION, accel = *claim->first.accel && !correlation;
+    const RtWorkload *workload = &experiment->workloads[cell->workload];
+    const char *before = accel && !claim->by_objects ? " on " : "";
+    if (accel && line && !claim->key.scene) {
+        const RtCandidate *candidate = &experiment->candidates[cell->candidate];
+        PUT(result, "%s", candidate->stem);
         rt_swept_name(&candidate->swept, claim->key.key, result->figures, RT_MAX_CLAIM_FIGURES);
-    } else {
-        PUT(result, " (%s", rt_candidate_label(experiment, point->candidate));
+    } else if (accel) {
+        PUT(result, "%s", rt_candidate_label(experiment, cell->candidate));
     }
     if (line && claim->key.scene) {
-        PUT(result, " on %s", workload->stem);
+        PUT(result, "%s%s", before, workload->stem);
         rt_swept_name(&workload->swept, claim->key.key, result->figures, RT_MAX_CLAIM_FIGURES);
     } else if (!claim->by_objects) {
-        PUT(result, " on %s", workload->label);
+        PUT(result, "%s%s", before, workload->label);
     }
-    if (kind) PUT(result, ", %s rays", kind_name);
+    if (kind)
+        PUT(result, ", %s rays",
+            cell->kind == RT_ALL_RAYS ? "all" : rt_experiment_kind_name(experiment, cell->kind));
+}
+
+/* Both labels, and those of the other cell if it is elsewhere; of a line without the parameter. */
+static void put_place(RtClaimResult *result, const RtExperiment *experiment, const RtClaim *claim,
+                      const RtClaimPoint *point) {
+    const bool kind = claim->first.each_kind && experiment->kind_count > 1;
+    const bool kinds = kind || point->at.kind != point->other.kind;
+    if (claim->mean) {
+        if (kind) PUT(result, " (%s rays)", rt_experiment_kind_name(experiment, point->at.kind));
+        return;
+    }
+    PUT(result, " (");
+    if (claim->form == RT_CLAIM_LEAST)
+        PUT(result, "%s to ", rt_candidate_label(experiment, point->at.candidate));
+    else
+        put_cell(result, experiment, claim, &point->at, kinds);
+    if (claim->apart) PUT(result, " to ");
+    if (claim->apart || claim->form == RT_CLAIM_LEAST)
+        put_cell(result, experiment, claim, &point->other, kinds);
     PUT(result, ")");
 }
 
@@ -235,23 +262,23 @@ static void put_crossover(RtClaimResult *result, const RtClaim *claim, const Fig
     uint32_t certain = 0;
     for (uint32_t i = 0; i < count; i++) certain += is_certain(&figure->crossovers[i]);
     if (certain > 1) PUT(result, "%" PRIu32 " crossovers: ", certain);
-    PUT(result, "%s", claim->accel);
+    PUT(result, "%s", claim->first.accel);
     for (uint32_t i = 0; i < count; i++) {
         const RtCrossover *crossover = &figure->crossovers[i];
         const bool is = is_certain(crossover), begins = !is && i == 0 && crossover->before != 0;
         const int side = is ? crossover->after : crossover->before;
         PUT(result, "%s", i > 0 ? "," : "");
-        if (is || begins) PUT(result, " is %s %s", side > 0 ? "above" : "below", claim->other);
+        if (is || begins) PUT(result, " is %s %s", side > 0 ? "above" : "below", claim->second.accel);
         if (is)
             PUT(result, " from ");
         else if (begins)
             PUT(result, " and may cross it at ");
         else
-            PUT(result, " may cross %s at ", claim->other);
+            PUT(result, " may cross %s at ", claim->second.accel);
         put_one_crossover(result, claim, figure, crossover);
     }
     if (count > 0) return;
-    PUT(result, " %s %s from %s=%.9g to %.9g", side_of(figure), claim->other, claim->key.key, first->x,
+    PUT(result, " %s %s from %s=%.9g to %.9g", side_of(figure), claim->second.accel, claim->key.key, first->x,
         last->x);
 }
 
@@ -263,13 +290,12 @@ static void put_figure(RtClaimResult *result, const RtExperiment *experiment, co
         put_crossover(result, claim, figure);
     else
         put_estimate(result, claim, &figure->value);
-    if (claim->readout && claim->form == RT_CLAIM_VALUE && isfinite(figure->value.median))
-        PUT(result, "%s", units[claim->measure]);
+    if (isfinite(figure->value.median)) put_unit(result, claim);
     if (figure->error > 0) {
         PUT(result, ", standard error ");
         put_number(result, claim, figure->error);
     }
-    if (claim->form == RT_CLAIM_EXPONENT || claim->form == RT_CLAIM_CORRELATION)
+    if (claim->form == RT_CLAIM_EXPONENT || claim->form == RT_CLAIM_CORRELATION || claim->mean)
         PUT(result, " over %" PRIu32 " values", figure->count);
     put_place(result, experiment, claim, figure->points);
     if (!claim->readout && has_too_few_rays(figure))
@@ -283,7 +309,7 @@ static void put_kinds(RtClaimResult *result, const RtExperiment *experiment, con
     RtClaimVerdict verdicts[RT_RAY_KIND_COUNT];
     bool has[RT_RAY_KIND_COUNT] = {false}, agree = true;
     for (uint32_t i = 0; i < count; i++) {
-        const RtRayKind kind = figures[i].points->kind;
+        const RtRayKind kind = figures[i].points->at.kind;
         verdicts[kind] = has[kind] ? worse(verdicts[kind], figures[i].verdict) : figures[i].verdict;
         has[kind] = true;
     }
@@ -323,10 +349,13 @@ static bool trim_line(RtClaimPoint **points, uint32_t *count) {
     return hidden;
 }
 
-/* How many points, from the first on, belong to the correlation of one kind of rays. */
-static uint32_t count_of_kind(const RtClaimPoint *points, uint32_t count) {
+/* How many points, from the first on, belong to one mean or correlation: of one kind of rays, and of a
+ * correlation of one scene. */
+static uint32_t count_of_kind(const RtClaim *claim, const RtClaimPoint *points, uint32_t count) {
     uint32_t same = 1;
-    while (same < count && points[same].kind == points->kind) same++;
+    while (same < count && points[same].at.kind == points->at.kind &&
+           (claim->mean || points[same].at.workload == points->at.workload))
+        same++;
     return same;
 }
 
@@ -334,11 +363,12 @@ static uint32_t count_of_kind(const RtClaimPoint *points, uint32_t count) {
 static uint32_t make_figures(const RtClaimCase *judge, RtClaimPoint *points, uint32_t count,
                              Figure *figures) {
     const RtClaim *claim = judge->claim;
-    const bool line = claim->form >= RT_CLAIM_EXPONENT, all = claim->form == RT_CLAIM_CORRELATION;
+    const bool line = claim->form >= RT_CLAIM_EXPONENT;
+    const bool group = claim->form == RT_CLAIM_CORRELATION || claim->mean;
     uint32_t made = 0;
     for (uint32_t first = 0, length; first < count; first += length) {
         RtClaimPoint *start = points + first;
-        length = all    ? count_of_kind(start, count - first)
+        length = group  ? count_of_kind(claim, start, count - first)
                  : line ? rt_claim_line(judge->results->experiment, claim, start, count - first)
                         : 1;
         uint32_t left = length;
@@ -364,26 +394,108 @@ static const Figure *find_worst(const RtClaim *claim, const Figure *figures, uin
     return worst;
 }
 
+static bool is_crossover(const RtClaim *claim) {
+    return claim->form == RT_CLAIM_CROSSOVER;
+}
+
+/* For a sentence: one figure, or the smallest and the largest; of curves, where they surely cross once. */
+static void put_value(RtClaimResult *result, const RtClaim *claim, const Figure *figures, uint32_t count,
+                      const Figure *least, const Figure *most) {
+    if (is_crossover(claim)) {
+        const bool certain = count == 1 && figures->found == 1 && is_certain(figures->crossovers);
+        if (certain)
+            put_one_crossover(result, claim, figures, figures->crossovers);
+        else
+            PUT(result, "unknown");
+    } else if (count == 1) {
+        put_estimate(result, claim, &figures->value);
+    } else {
+        const bool falls = claim->format.scale < 0; /* the larger the value */
+        put_number(result, claim, (falls ? most : least)->value.median);
+        PUT(result, " to ");
+        put_number(result, claim, (falls ? least : most)->value.median);
+    }
+    for (uint32_t i = 0; i < count && claim->format.offset != 0; i++)
+        result->contrary |=
+            in_units(claim, claim->format.scale < 0 ? figures[i].value.high : figures[i].value.low) < 0;
+    put_unit(result, claim);
+    rt_append_text(result->value, sizeof result->value, "%s", result->figures);
+    result->figures[0] = '\0';
+}
+
 /* A few figures, or the smallest and the largest of many. */
 static void put_readout(RtClaimResult *result, const RtExperiment *experiment, const RtClaim *claim,
                         const Figure *figures, uint32_t count) {
     enum { MOST_LISTED = 4 };
-    if (count <= MOST_LISTED || claim->form == RT_CLAIM_CROSSOVER) {
-        for (uint32_t i = 0; i < count; i++) {
-            PUT(result, "%s", i ? "; " : "");
-            put_figure(result, experiment, claim, &figures[i]);
-        }
-        return;
-    }
     const Figure *least = figures, *most = figures;
     for (uint32_t i = 1; i < count; i++) {
         const double value = figures[i].value.median;
         if (isnan(least->value.median) || value < least->value.median) least = &figures[i];
         if (isnan(most->value.median) || value > most->value.median) most = &figures[i];
     }
+    put_value(result, claim, figures, count, least, most);
+    if (count <= MOST_LISTED || is_crossover(claim)) {
+        for (uint32_t i = 0; i < count; i++) {
+            PUT(result, "%s", i ? "; " : "");
+            put_figure(result, experiment, claim, &figures[i]);
+        }
+        return;
+    }
     put_figure(result, experiment, claim, least);
     PUT(result, " to ");
     put_figure(result, experiment, claim, most);
+}
+
+/* "5 of 7, 1 undecided": in how many figures a claim holds. Those of `least` are one for each rival; then it
+ * holds in a cell if it does for all of them. */
+static void put_count(RtClaimResult *result, const Figure *figures, uint32_t count) {
+    uint32_t verdicts[RT_CLAIM_VERDICT_COUNT] = {0}, cells = 0;
+    for (uint32_t i = 0, next; i < count; i = next) {
+        const RtClaimCell *cell = &figures[i].points->at;
+        RtClaimVerdict worst = figures[i].verdict;
+        for (next = i + 1; next < count && memcmp(cell, &figures[next].points->at, sizeof *cell) == 0; next++)
+            worst = worse(worst, figures[next].verdict);
+        verdicts[worst]++;
+        cells++;
+    }
+    PUT(result, "%" PRIu32 " of %" PRIu32, verdicts[RT_CLAIM_HOLDS], cells);
+    if (verdicts[RT_CLAIM_UNDECIDED]) PUT(result, ", %" PRIu32 " undecided", verdicts[RT_CLAIM_UNDECIDED]);
+    rt_append_text(result->value, sizeof result->value, "%s", result->figures);
+}
+
+/* Whether no other point of the same scene and kind of rays is surely less. */
+static bool is_least(const RtClaimCase *judge, const RtClaimPoint *points, uint32_t count, uint32_t i) {
+    const RtClaimMeasure measure = judge->claim->first.measure;
+    for (uint32_t k = 0; k < count; k++) {
+        if (points[k].at.workload != points[i].at.workload || points[k].at.kind != points[i].at.kind)
+            continue;
+        if (k != i && rt_claim_ratio(judge, measure, &points[i].at, measure, &points[k].at).low > 1)
+            return false;
+    }
+    return true;
+}
+
+/* The accelerators with the least, each with its scene and kind of rays unless there is one only: level ones,
+ * too. */
+static void put_least(const RtClaimCase *judge, const RtClaimPoint *points, uint32_t count,
+                      RtClaimResult *result) {
+    const RtExperiment *experiment = judge->results->experiment;
+    const char *names[RT_MAX_CANDIDATES];
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const RtClaimCell *cell = &points[i].at;
+        const char *label = rt_candidate_label(experiment, cell->candidate);
+        uint32_t k = 0;
+        if (!is_least(judge, points, count, i)) continue;
+        PUT(result, "%s%s (%s", *result->figures ? "; " : "", label,
+            experiment->workloads[cell->workload].label);
+        if (judge->claim->first.each_kind)
+            PUT(result, ", %s rays", rt_experiment_kind_name(experiment, cell->kind));
+        PUT(result, ")");
+        while (k < found && strcmp(names[k], label) != 0) k++;
+        if (k == found) names[found++] = label;
+    }
+    rt_join_names(names, found, result->value, sizeof result->value);
 }
 
 static void judge_points(const RtClaimCase *judge, RtClaimPoint *points, uint32_t count,
@@ -393,51 +505,72 @@ static void judge_points(const RtClaimCase *judge, RtClaimPoint *points, uint32_
     Figure *figures = rt_alloc(count, sizeof *figures);
     const uint32_t made = figures ? make_figures(judge, points, count, figures) : 0;
     if (made == 0) {
-        *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "fewer than two values were measured"};
+        *result = no_figure(RT_CLAIM_UNDECIDED, "fewer than two values were measured");
+    } else if (claim->counted) {
+        put_count(result, figures, made);
+    } else if (claim->readout && claim->form == RT_CLAIM_LEAST) {
+        put_least(judge, points, count, result);
     } else if (claim->readout) {
         put_readout(result, experiment, claim, figures, made);
     } else {
         const Figure *worst = find_worst(claim, figures, made);
         result->verdict = worst->verdict;
         put_figure(result, experiment, claim, worst);
-        if (claim->each_kind) put_kinds(result, experiment, figures, made);
+        if (claim->first.each_kind) put_kinds(result, experiment, figures, made);
     }
     rt_free(figures);
 }
 
+/* The intervals of tracing times that a claim rests on. */
+static uint32_t count_intervals(const RtResults *results, const RtClaim *claim) {
+    const RtClaimMeasure first = claim->first.measure, second = claim->second.measure;
+    const bool other = claim->form == RT_CLAIM_CORRELATION || claim->apart;
+    bool timed = first == RT_CLAIM_TIME || first == RT_CLAIM_FRAME_TIME;
+    timed |= other && (second == RT_CLAIM_TIME || second == RT_CLAIM_FRAME_TIME);
+    if (!timed) return 0;
+    return rt_claim_gather(&(RtClaimCase){results, claim, 0}, NULL) * (claim->apart ? 2 : 1);
+}
+
+/* Those of a text, if it is a claim. */
+static uint32_t count_of(const RtResults *results, const char *text) {
+    RtClaim claim;
+    if (rt_claim_parse(results->experiment, text, &claim, NULL) != RT_OK) return 0;
+    return claim.readout && !claim.counted ? 0 : count_intervals(results, &claim);
+}
+
 double rt_claims_coverage(const RtResults *results, uint32_t *count) {
     const RtExperiment *experiment = results->experiment;
+    RtFindingPiece piece;
     *count = 0;
-    for (uint32_t i = 0; i < experiment->claim_count; i++) {
-        RtClaim claim;
-        if (rt_claim_parse(experiment, experiment->claims[i], &claim, NULL) != RT_OK || claim.readout)
-            continue;
-        if (claim.measure == RT_CLAIM_TIME || claim.first == RT_CLAIM_TIME)
-            *count += rt_claim_gather(&(RtClaimCase){results, &claim, 0}, NULL);
+    for (uint32_t i = 0; i < experiment->claim_count; i++) *count += count_of(results, experiment->claims[i]);
+    for (const char *at = experiment->finding; rt_finding_next(&at, &piece, NULL);) {
+        if (piece.sort >= RT_FINDING_READOUT && !*piece.from) *count += count_of(results, piece.expression);
     }
     return rt_coverage_of_each(*count);
 }
 
-static void judge_parsed(const RtResults *results, const RtClaim *claim, RtClaimPoint *points,
-                         RtClaimResult *result) {
-    uint32_t known = 0, intervals;
-    const RtClaimCase judge = {
-        results, claim, claim->readout ? rt_coverage_of_each(1) : rt_claims_coverage(results, &intervals)};
-    const uint32_t count = rt_claim_gather(&judge, points);
+static void judge_parsed(const RtClaimCase *judge, RtClaimPoint *points, RtClaimResult *result) {
+    const RtResults *results = judge->results;
+    const RtClaim *claim = judge->claim;
+    uint32_t known = 0;
+    const uint32_t count = rt_claim_gather(judge, points);
     for (uint32_t k = 0; k < count; k++) known += rt_claim_point_known(&points[k]) ? 1 : 0;
-    if (!rt_claim_any_measured(results, claim, points, count)) {
-        *result = (RtClaimResult){RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured"};
+    const bool measured = rt_claim_any_measured(results, claim, points, count);
+    if (!measured) {
+        *result = no_figure(RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured");
     } else if (known == 0) {
-        *result = claim->measure >= RT_CLAIM_BUILD_TIME
-                      ? (RtClaimResult){RT_CLAIM_UNDECIDED, "these structures have no such value"}
-                      : (RtClaimResult){RT_CLAIM_UNDECIDED, "no measurements of all kinds of rays"};
+        *result = rt_claim_subject(claim->first.measure) == RT_SUBJECT_STRUCTURE
+                      ? no_figure(RT_CLAIM_UNDECIDED, "these structures have no such value")
+                      : no_figure(RT_CLAIM_UNDECIDED, "no measurements of all kinds of rays");
     } else {
         /* An exponent needs all values; a crossover those between its ends. */
-        const bool whole = claim->form == RT_CLAIM_EXPONENT || claim->form == RT_CLAIM_CROSSOVER;
-        judge_points(&judge, points, whole ? count : drop_unknown(points, count), result);
+        const bool whole = claim->form == RT_CLAIM_EXPONENT || is_crossover(claim);
+        judge_points(judge, points, whole ? count : drop_unknown(points, count), result);
     }
+    result->measured = measured;
+    result->whole = known == count && count > 0;
     if (known > 0 && known < count) {
-        if (claim->form != RT_CLAIM_CROSSOVER) result->verdict = worse(result->verdict, RT_CLAIM_UNDECIDED);
+        if (!is_crossover(claim)) result->verdict = worse(result->verdict, RT_CLAIM_UNDECIDED);
         PUT(result, "; %" PRIu32 " of %" PRIu32 " values are unknown", count - known, count);
     }
     const char *refusal = known < count || count == 0 ? rt_claim_refusal(results, claim) : NULL;
@@ -446,20 +579,36 @@ static void judge_parsed(const RtResults *results, const RtClaim *claim, RtClaim
     if (claim->readout) result->verdict = RT_CLAIM_FIGURE;
 }
 
-void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result) {
+RtStatus rt_claim_judge_text(const RtResults *results, const char *text, bool other, RtClaimResult *result,
+                             RtError *error) {
     const RtExperiment *experiment = results->experiment;
-    RtClaim claim;
-    *result = (RtClaimResult){RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured"};
     const size_t most = (size_t)experiment->workload_count * experiment->candidate_count * RT_RAY_KIND_COUNT;
+    RtClaim claim;
+    uint32_t intervals, own;
+    *result = no_figure(RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured");
+    RT_TRY(rt_claim_parse(experiment, text, &claim, error));
     RtClaimPoint *points = rt_alloc(most, sizeof *points);
-    if (points && rt_claim_parse(experiment, experiment->claims[i], &claim, NULL) == RT_OK) {
-        *result = (RtClaimResult){.verdict = RT_CLAIM_HOLDS};
-        judge_parsed(results, &claim, points, result);
-    }
+    if (!points) return rt_fail_memory(error, "the cells of a claim", most * sizeof *points);
+    RtClaimCase judge = {results, &claim, rt_claims_coverage(results, &intervals)};
+    own = count_intervals(results, &claim);
+    if (other) judge.coverage = rt_coverage_of_each(intervals + own);
+    if (claim.readout && !claim.counted)
+        judge.coverage = rt_coverage_of_each(claim.mean ? own : claim.apart ? 2 : 1);
+    *result = (RtClaimResult){.verdict = RT_CLAIM_HOLDS};
+    judge_parsed(&judge, points, result);
     rt_free(points);
+    return RT_OK;
+}
+
+void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result) {
+    rt_claim_judge_text(results, results->experiment->claims[i], false, result, NULL);
 }
 
 /* ---- all claims ---- */
+
+const char *rt_claims_variant(const RtExperiment *experiment) {
+    return experiment->quick ? " (made for the full experiment; this is its --quick variant)" : "";
+}
 
 RtStatus rt_claims_check(const RtResults *results, RtError *error) {
     const RtExperiment *experiment = results->experiment;
@@ -492,9 +641,7 @@ void rt_claims_print(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     char level[RT_MAX_CLAIM_LEVEL];
     bool open = false;
-    if (experiment->claim_count)
-        fprintf(out, "\nClaims%s:\n",
-                experiment->quick ? " (made for the full experiment; this is its --quick variant)" : "");
+    if (experiment->claim_count) fprintf(out, "\nClaims%s:\n", rt_claims_variant(experiment));
     for (uint32_t i = 0; i < experiment->claim_count; i++) {
         RtClaimResult result;
         rt_claim_judge(results, i, &result);
@@ -515,10 +662,4 @@ void rt_claims_print(const RtResults *results, FILE *out) {
                 RT_CLAIM_RAYS);
     rt_claims_level(results, level);
     if (*level) fprintf(out, "  %s\n", level);
-}
-
-void rt_print_summary(const RtResults *results, FILE *out) {
-    rt_print_outcome(results, out);
-    rt_claims_print(results, out);
-    rt_print_null_runs(results, out);
 }

@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The verdicts on claims (experiment/claim.h).
+/* The verdicts on claims (experiment/claim.h), those of lists and those of findings.
  *
  * Times have intervals, counts are exact. A claim about times holds if it holds for all values within the
  * intervals, does not hold if it holds for none, and is undecided otherwise. It is undecided, too, with fewer
  * than RT_CLAIM_RAYS rays. Ratios of times, and the steps of a trend of times on one scene, are paired
- * (results/results.h). With many cells some interval misses by chance; so all intervals of tracing times in
- * an experiment's claims hold together in 95 % of all cases (rt_coverage_of_each, counting the cells of all
- * claims). Readouts claim nothing and have 95 % each; so have times of builds and frames, whose single
- * measurements are not kept. The time of a single build has no interval and is taken as exact. A break-even
- * is the number of rays from which on an accelerator is ahead of the baseline, its build included; it is
- * infinite if there is none.
+ * (results/results.h); one of cells in different places has the quotient of both estimates, and rests on two
+ * intervals. With many intervals some miss by chance; so all those of tracing times in an experiment's claims
+ * hold together in 95 % of all cases (rt_coverage_of_each, counting the cells of all claims). Readouts claim
+ * nothing and have 95 % each; so have times of builds and rendered frames, whose single measurements are not
+ * kept. The time of a single build has no interval and is taken as exact. A break-even is the number of rays
+ * from which on an accelerator is ahead of the baseline, its build included; it is infinite if there is none.
+ *
+ * That an accelerator is fastest is judged against each other one, and counts as so many intervals. A claim
+ * about a mean or a correlation rests on those of its cells.
  *
  * An exponent is the least-squares slope of the logarithms, a correlation Pearson's of the logarithms.
  * claims_points.h defines their intervals. They include the scatter of the values, also of counts: a curve
@@ -31,6 +34,7 @@
 #define RT_CLAIMS_CLAIMS_H
 
 #include "experiment/claim.h"
+#include "experiment/finding.h"
 #include "results/results.h"
 
 typedef enum RtClaimVerdict {
@@ -43,11 +47,15 @@ typedef enum RtClaimVerdict {
 } RtClaimVerdict;
 
 #define RT_MAX_CLAIM_FIGURES 512
+#define RT_MAX_CLAIM_VALUE   160
 typedef struct RtClaimResult {
     RtClaimVerdict verdict;
     /* With intervals: the deciding figure, or the one nearest to deciding; of a readout all, or the smallest
      * and the largest of many. */
     char figures[RT_MAX_CLAIM_FIGURES];
+    char value[RT_MAX_CLAIM_VALUE]; /* of a readout, for a sentence: "1.43 [1.40, 1.47]", "0.30 to 0.89" */
+    bool measured, whole;           /* any, or all values of its cells are known */
+    bool contrary;                  /* "percent less" or "more" of what may be the other way round */
 } RtClaimResult;
 
 /* "holds", "does not hold", "undecided", "no measurements", "figure". */
@@ -57,7 +65,12 @@ const char *rt_claim_verdict_name(RtClaimVerdict verdict);
  * all cases; *count gets the number of them. */
 double rt_claims_coverage(const RtResults *results, uint32_t *count);
 
-/* Judges claim number `i` of the experiment; an invalid one has no measurements. */
+/* Judges a claim. `other`: it is none of this experiment's, and counts as one more of them in the coverage.
+ * RT_BAD_INPUT if it is none; then it has no measurements. */
+RtStatus rt_claim_judge_text(const RtResults *results, const char *text, bool other, RtClaimResult *result,
+                             RtError *error);
+
+/* The same of claim number `i` of the experiment; an invalid one has no measurements. */
 void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result);
 
 /* RT_MISMATCH with the number of claims that do not hold, if there are any. */
@@ -67,10 +80,10 @@ RtStatus rt_claims_check(const RtResults *results, RtError *error);
 #define RT_MAX_CLAIM_LEVEL 160
 void rt_claims_level(const RtResults *results, char out[RT_MAX_CLAIM_LEVEL]);
 
+/* A heading's remark on claims and findings of a --quick variant; else "". */
+const char *rt_claims_variant(const RtExperiment *experiment);
+
 /* Prints all claims with their verdicts, and which of them changed after the run. */
 void rt_claims_print(const RtResults *results, FILE *out);
-
-/* What a run ends with: its outcome, claims and null runs (results/result_tables.h). */
-void rt_print_summary(const RtResults *results, FILE *out);
 
 #endif

@@ -14,6 +14,12 @@ bool rt_claim_point_known(const RtClaimPoint *point) {
 
 /* ---- values ---- */
 
+static RtEstimate quotient(const RtEstimate *over, const RtEstimate *under) {
+    return (RtEstimate){.median = over->median / under->median,
+                        .low = over->low / under->high,
+                        .high = over->high / under->low};
+}
+
 /* The rays from which on it is ahead. If it is ahead up to some number, that is never; up to any, from 0. */
 static RtEstimate break_even(const RtResults *results, uint32_t t, uint32_t c) {
     const RtBreakEven even = rt_results_break_even(results, t, c);
@@ -24,70 +30,103 @@ static RtEstimate break_even(const RtResults *results, uint32_t t, uint32_t c) {
                         .high = isinf(even.rays.low) ? 0 : never};
 }
 
-/* A measure of a cell of one kind of rays, or of RT_ALL_RAYS. */
-static RtEstimate value_at(const RtClaimCase *of, RtClaimMeasure measure, RtRayKind kind, uint32_t t,
-                           uint32_t c) {
-    const RtResults *results = of->results;
-    const RtEstimate unknown = rt_estimate_exactly((double)NAN);
-    if (measure >= RT_CLAIM_BUILD_TIME) {
-        const RtBuildResult *build = rt_build_at(results, t, c);
-        if (!build->known) return unknown;
-        if (measure == RT_CLAIM_BUILD_TIME) return build->seconds;
-        if (measure >= RT_CLAIM_RENDER_TIME && !build->render.known) return unknown;
-        if (measure == RT_CLAIM_RENDER_TIME) return build->render.seconds;
-        if (measure == RT_CLAIM_QUERY_SHARE) return build->render.share;
-        if (measure == RT_CLAIM_BREAK_EVEN) return break_even(results, t, c);
-        return rt_estimate_exactly(measure == RT_CLAIM_BYTES ? (double)build->structure.bytes
-                                                             : build->structure.predicted_cost);
+/* The rays of a whole set, or of all sets; NAN if they are unknown. */
+static double whole_rays(const RtResults *results, uint32_t t, RtRayKind kind) {
+    const RtExperiment *experiment = results->experiment;
+    double sum = 0;
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        if (kind == RT_ALL_RAYS || kind == experiment->kinds[k])
+            sum += rt_results_weight(results, t, experiment->kinds[k]);
     }
-    if (measure == RT_CLAIM_TIME) return rt_results_time(results, t, c, kind, of->coverage);
-    const RtCost cost = rt_results_cost(results, t, c, kind);
+    return sum > 0 ? sum : (double)NAN;
+}
+
+static RtEstimate structure_value(const RtResults *results, RtClaimMeasure measure, uint32_t t, uint32_t c) {
+    const RtBuildResult *build = rt_build_at(results, t, c);
+    const RtDescription *structure = &build->structure;
+    double value = (double)NAN;
+    if (!build->known) return rt_estimate_exactly(value);
+    switch (measure) {
+    case RT_CLAIM_BUILD_TIME: return build->seconds;
+    case RT_CLAIM_BREAK_EVEN: return break_even(results, t, c);
+    case RT_CLAIM_RENDER_TIME:
+        return build->render.known ? build->render.seconds : rt_estimate_exactly(value);
+    case RT_CLAIM_QUERY_SHARE: return build->render.known ? build->render.share : rt_estimate_exactly(value);
+    case RT_CLAIM_BYTES: value = (double)structure->bytes; break;
+    case RT_CLAIM_PREDICTED_COST: value = structure->predicted_cost; break;
+    case RT_CLAIM_INTERIOR: value = (double)structure->interior; break;
+    case RT_CLAIM_LEAVES: value = (double)structure->leaves; break;
+    case RT_CLAIM_EMPTY_LEAVES: value = (double)structure->empty_leaves; break;
+    case RT_CLAIM_REFERENCES: value = (double)structure->references; break;
+    default: value = (double)structure->depth;
+    }
+    return rt_estimate_exactly(value);
+}
+
+/* A measure of a cell of one kind of rays, or of RT_ALL_RAYS. */
+static RtEstimate value_at(const RtClaimCase *of, RtClaimMeasure measure, const RtClaimCell *cell) {
+    const RtResults *results = of->results;
+    const uint32_t t = cell->workload, c = cell->candidate;
+    const double rays = whole_rays(results, t, RT_ALL_RAYS);
+    if (rt_claim_subject(measure) == RT_SUBJECT_STRUCTURE) return structure_value(results, measure, t, c);
+    if (measure == RT_CLAIM_TIME) return rt_results_time(results, t, c, cell->kind, of->coverage);
+    if (measure == RT_CLAIM_FRAME_TIME) {
+        const RtEstimate mean = rt_results_time(results, t, c, RT_ALL_RAYS, of->coverage);
+        return (RtEstimate){rays * mean.median, rays * mean.low, rays * mean.high, rays * mean.least};
+    }
+    if (measure == RT_CLAIM_OBJECTS)
+        return rt_estimate_exactly(results->workloads[t].known ? results->workloads[t].objects : (double)NAN);
+    if (measure == RT_CLAIM_RAY_COUNT) return rt_estimate_exactly(whole_rays(results, t, cell->kind));
+    if (measure == RT_CLAIM_SHARE) return rt_estimate_exactly(whole_rays(results, t, cell->kind) / rays);
+    const RtCost cost = rt_results_cost(results, t, c, cell->kind);
     const double counts[] = {[RT_CLAIM_OBJECT_TESTS] = cost.object_tests,
                              [RT_CLAIM_EXTENT_TESTS] = cost.extent_tests,
                              [RT_CLAIM_STEPS] = cost.steps,
-                             [RT_CLAIM_CSG_TESTS] = cost.csg_tests};
-    return cost.whole ? rt_estimate_exactly(counts[measure]) : unknown;
+                             [RT_CLAIM_CSG_TESTS] = cost.csg_tests,
+                             [RT_CLAIM_HITS] = cost.hits};
+    return rt_estimate_exactly(cost.whole ? counts[measure] : (double)NAN);
 }
 
-/* The accelerator that `c` is compared with on workload `t`; false if it is not measured there. */
-static bool find_other(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c,
-                       uint32_t *other) {
-    for (*other = 0; *other < experiment->candidate_count; ++*other) {
-        if (rt_candidate_runs(experiment, *other, t) && rt_claim_is_other(experiment, claim, t, c, *other))
-            return true;
-    }
-    return false;
-}
-
-static RtEstimate ratio_at(const RtClaimCase *of, RtRayKind kind, uint32_t t, uint32_t c, uint32_t other) {
-    const RtClaimMeasure measure = of->claim->measure;
-    if (measure == RT_CLAIM_TIME) return rt_results_time_ratio(of->results, t, c, other, kind, of->coverage);
-    const RtEstimate over = value_at(of, measure, kind, t, c);
-    if (other == c) return rt_estimate_exactly(over.median / over.median);
-    const RtEstimate under = value_at(of, measure, kind, t, other);
-    return (RtEstimate){
-        .median = over.median / under.median, .low = over.low / under.high, .high = over.high / under.low};
+RtEstimate rt_claim_ratio(const RtClaimCase *of, RtClaimMeasure over, const RtClaimCell *a,
+                          RtClaimMeasure under, const RtClaimCell *b) {
+    const bool same = over == under && a->workload == b->workload && a->kind == b->kind;
+    if (same && (over == RT_CLAIM_TIME || over == RT_CLAIM_FRAME_TIME))
+        return rt_results_time_ratio(of->results, a->workload, a->candidate, b->candidate,
+                                     over == RT_CLAIM_TIME ? a->kind : RT_ALL_RAYS, of->coverage);
+    const RtEstimate one = value_at(of, over, a), other = value_at(of, under, b);
+    return same && a->candidate == b->candidate ? rt_estimate_exactly(one.median / one.median)
+                                                : quotient(&one, &other);
 }
 
 /* ---- the cells of a claim ---- */
 
+/* The second side's cell of a cell of the first; false if it is not measured. */
+static bool find_other(const RtExperiment *experiment, const RtClaim *claim, const RtClaimCell *cell,
+                       RtClaimCell *other) {
+    *other = *cell;
+    if (rt_claim_partner(experiment, claim, cell, other) == 0 ||
+        !rt_candidate_runs(experiment, other->candidate, other->workload))
+        return false;
+    if (!*claim->second.accel) other->candidate = cell->candidate;
+    return true;
+}
+
 static bool is_called(const RtExperiment *experiment, const RtClaim *claim, uint32_t c) {
-    if (strcmp(claim->accel, RT_CLAIM_ALL) != 0)
-        return rt_candidate_is_called(&experiment->candidates[c], claim->accel);
+    const char *accel = claim->first.accel;
+    if (!*accel && claim->form != RT_CLAIM_LEAST) return c == experiment->baseline;
+    if (*accel && strcmp(accel, RT_CLAIM_ALL) != 0)
+        return rt_candidate_is_called(&experiment->candidates[c], accel);
     return !experiment->candidates[c].tried && experiment->candidates[c].entry != UINT32_MAX;
 }
 
-static bool is_about(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c) {
+static bool is_about(const RtExperiment *experiment, const RtClaim *claim, const RtClaimCell *cell) {
+    const uint32_t t = cell->workload, c = cell->candidate;
+    RtClaimCell other;
     if (!is_called(experiment, claim, c)) return false;
     if (!rt_candidate_runs(experiment, c, t)) return false;
-    if (*claim->scene && !rt_workload_is_called(&experiment->workloads[t], claim->scene)) return false;
-    for (uint32_t p = 0; p < claim->place_count; p++) {
-        const char *value = rt_swept_of(experiment, &claim->places[p].key, t, c);
-        if (!value || !rt_swept_equal(value, claim->places[p].value)) return false;
-    }
-    uint32_t other;
-    const bool all = claim->form == RT_CLAIM_CROSSOVER && strcmp(claim->accel, RT_CLAIM_ALL) == 0;
-    return !all || !find_other(experiment, claim, t, c, &other) || other != c;
+    if (!rt_claim_side_has(experiment, &claim->first, t, c)) return false;
+    const bool all = claim->form == RT_CLAIM_CROSSOVER && strcmp(claim->first.accel, RT_CLAIM_ALL) == 0;
+    return !all || !find_other(experiment, claim, cell, &other) || other.candidate != c;
 }
 
 /* Whether a measured structure has no such value: no prediction, no counts, or it is the baseline. */
@@ -96,45 +135,76 @@ static bool lacks(const RtResults *results, RtClaimMeasure measure, uint32_t t, 
     if (!build->known) return false;
     if (measure == RT_CLAIM_PREDICTED_COST) return isnan(build->structure.predicted_cost);
     if (measure == RT_CLAIM_BREAK_EVEN) return rt_candidate_is_baseline(results->experiment, c);
-    return measure > RT_CLAIM_TIME && measure < RT_CLAIM_BUILD_TIME && !build->counts;
+    return measure > RT_CLAIM_TIME && measure < RT_CLAIM_FRAME_TIME && !build->counts;
+}
+
+/* Whether `is fastest` and the like compare candidate `c` on workload `t`. Not with one that refused it, the
+ * yardstick, members that only a best-of tries, and best-ofs in what structures have. */
+static bool is_ranked(const RtClaimCase *of, uint32_t t, uint32_t c) {
+    const RtExperiment *experiment = of->results->experiment;
+    const RtCandidate *candidate = &experiment->candidates[c];
+    const RtClaimMeasure measure = of->claim->first.measure;
+    return rt_candidate_runs(experiment, c, t) && !rt_results_refused(of->results, t, c) &&
+           strcmp(candidate->spec, rt_accel_yardstick()) != 0 && !candidate->tried &&
+           !(candidate->member_count > 0 && rt_claim_subject(measure) == RT_SUBJECT_STRUCTURE) &&
+           !lacks(of->results, measure, t, c);
+}
+
+/* Whether both are the same cell: a best-of and what it chose. */
+static bool same_cell(const RtClaimCase *of, const RtClaimCell *cell, uint32_t c) {
+    const RtExperiment *e = of->results->experiment;
+    if (c == cell->candidate) return true;
+    if (cell->kind == RT_ALL_RAYS)
+        return rt_candidate_is_member(e, c, cell->candidate) || rt_candidate_is_member(e, cell->candidate, c);
+    return rt_results_candidate(of->results, cell->workload, c, cell->kind) ==
+           rt_results_candidate(of->results, cell->workload, cell->candidate, cell->kind);
 }
 
 /* The x of a cell; false if the claim excludes it. */
-static bool abscissa(const RtClaimCase *of, RtRayKind kind, uint32_t t, uint32_t c, double *x) {
+static bool abscissa(const RtClaimCase *of, const RtClaimCell *cell, double *x) {
     const RtResults *results = of->results;
     const RtClaim *claim = of->claim;
-    *x = 0;
+    const uint32_t t = cell->workload, c = cell->candidate;
+    *x = 1;
     if (claim->form == RT_CLAIM_CORRELATION) {
-        *x = value_at(of, claim->first, kind, t, c).median;
-        bool all = strcmp(claim->accel, RT_CLAIM_ALL) == 0;
-        return !(all && (lacks(results, claim->first, t, c) || lacks(results, claim->measure, t, c)));
+        *x = value_at(of, claim->first.measure, cell).median;
+        bool all = strcmp(claim->first.accel, RT_CLAIM_ALL) == 0;
+        return !(all &&
+                 (lacks(results, claim->first.measure, t, c) || lacks(results, claim->second.measure, t, c)));
     }
     if (claim->by_objects) {
-        const RtWorkloadResult *workload = &results->workloads[t];
-        *x = workload->known ? (double)workload->objects : (double)NAN;
+        *x = value_at(of, RT_CLAIM_OBJECTS, cell).median;
         return true;
     }
-    const char *value = claim->key.key ? rt_swept_of(results->experiment, &claim->key, t, c) : "0";
+    const char *value = claim->key.key ? rt_swept_of(results->experiment, &claim->key, t, c) : "1";
     return value && rt_swept_number(value, x);
 }
 
-static uint64_t rays_of(const RtClaimCase *of, RtRayKind kind, uint32_t t, uint32_t c) {
-    const bool all = of->claim->measure == RT_CLAIM_BREAK_EVEN;
-    if (!rt_claim_is_of_rays(of->claim) && !all) return UINT64_MAX;
-    return rt_results_cost(of->results, t, c, all ? RT_ALL_RAYS : kind).rays;
+/* UINT64_MAX for measures that no number of rays makes surer. */
+static uint64_t rays_of(const RtClaimCase *of, RtClaimMeasure measure, const RtClaimCell *cell) {
+    const RtClaimSubject subject = rt_claim_subject(measure);
+    const bool all = measure == RT_CLAIM_BREAK_EVEN || subject == RT_SUBJECT_FRAME;
+    if (subject != RT_SUBJECT_RAYS && measure != RT_CLAIM_HITS && !all) return UINT64_MAX;
+    return rt_results_cost(of->results, cell->workload, cell->candidate, all ? RT_ALL_RAYS : cell->kind).rays;
 }
 
+static bool has_other(const RtClaim *claim) {
+    return rt_claim_has_two_sides(claim) || (claim->form == RT_CLAIM_LEAST && *claim->first.accel);
+}
+
+/* Sets rays and y of a point whose cells are known. */
 static void set_values(const RtClaimCase *of, RtClaimPoint *point) {
     const RtClaim *claim = of->claim;
-    const uint32_t t = point->workload, c = point->candidate;
-    uint32_t other = c;
-    const bool found = !*claim->other || find_other(of->results->experiment, claim, t, c, &other);
-    const uint64_t own = rays_of(of, point->kind, t, c),
-                   its = found ? rays_of(of, point->kind, t, other) : own;
+    const bool correlation = claim->form == RT_CLAIM_CORRELATION, two = has_other(claim);
+    const RtClaimMeasure first = claim->first.measure, second = rt_claim_has_two_sides(claim) || correlation
+                                                                    ? claim->second.measure
+                                                                    : first;
+    const uint64_t own = rays_of(of, first, &point->at),
+                   its = two && !point->found ? own : rays_of(of, second, &point->other);
     point->rays = own < its ? own : its;
-    point->y = !found          ? rt_estimate_exactly((double)NAN)
-               : *claim->other ? ratio_at(of, point->kind, t, c, other)
-                               : value_at(of, claim->measure, point->kind, t, c);
+    point->y = !two            ? value_at(of, second, &point->at)
+               : !point->found ? rt_estimate_exactly((double)NAN)
+                               : rt_claim_ratio(of, first, &point->at, second, &point->other);
 }
 
 /* Whether the scene has rays of that kind, as far as is known. */
@@ -142,19 +212,38 @@ static bool has_rays(const RtResults *results, uint32_t t, RtRayKind kind) {
     return !results->workloads[t].known || results->workloads[t].rays[kind] > 0;
 }
 
+/* One point of a cell; of a comparison with all others one for each of them. */
+static uint32_t add_points(const RtClaimCase *of, const RtClaimCell *cell, RtClaimPoint *points) {
+    const RtExperiment *experiment = of->results->experiment;
+    const RtClaim *claim = of->claim;
+    const bool readout = claim->form == RT_CLAIM_LEAST && !*claim->first.accel,
+               ranks = claim->form == RT_CLAIM_LEAST && !readout;
+    RtClaimPoint point = {.at = *cell, .other = *cell, .found = true};
+    uint32_t count = 0;
+    if (!is_about(experiment, claim, cell) || !abscissa(of, cell, &point.x)) return 0;
+    if (readout && !is_ranked(of, cell->workload, cell->candidate)) return 0;
+    for (uint32_t c = 0; c < (ranks ? experiment->candidate_count : 1); c++) {
+        if (ranks) point.other.candidate = c;
+        if (ranks && (same_cell(of, cell, c) || !is_ranked(of, cell->workload, c))) continue;
+        if (points && rt_claim_has_two_sides(claim))
+            point.found = find_other(experiment, claim, cell, &point.other);
+        if (points) set_values(of, &point);
+        if (points) points[count] = point;
+        count++;
+    }
+    return count;
+}
+
 /* Those of one kind of rays, or of RT_ALL_RAYS. */
 static uint32_t gather_kind(const RtClaimCase *of, RtRayKind kind, RtClaimPoint *points) {
     const RtExperiment *experiment = of->results->experiment;
-    const RtClaim *claim = of->claim;
+    const RtClaimSide *first = &of->claim->first;
     uint32_t count = 0;
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
-        if (claim->each_kind && !has_rays(of->results, t, kind)) continue;
+        if (first->each_kind && !has_rays(of->results, t, kind)) continue;
         for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-            RtClaimPoint point = {.workload = t, .candidate = c, .kind = kind};
-            if (!is_about(experiment, claim, t, c) || !abscissa(of, kind, t, c, &point.x)) continue;
-            if (points) set_values(of, &point);
-            if (points) points[count] = point;
-            count++;
+            const RtClaimCell cell = {t, c, kind};
+            count += add_points(of, &cell, points ? points + count : NULL);
         }
     }
     return count;
@@ -163,19 +252,23 @@ static uint32_t gather_kind(const RtClaimCase *of, RtRayKind kind, RtClaimPoint 
 uint32_t rt_claim_gather(const RtClaimCase *of, RtClaimPoint *points) {
     const RtExperiment *experiment = of->results->experiment;
     uint32_t count = 0;
-    if (!of->claim->each_kind) return gather_kind(of, of->claim->kind, points);
+    if (!of->claim->first.each_kind) return gather_kind(of, of->claim->first.kind, points);
     for (uint32_t k = 0; k < experiment->kind_count; k++)
         count += gather_kind(of, experiment->kinds[k], points ? points + count : NULL);
     return count;
 }
 
-static bool is_measured(const RtResults *results, const RtClaim *claim, RtRayKind asked, uint32_t t,
-                        uint32_t c) {
-    if (claim->measure >= RT_CLAIM_BUILD_TIME) return rt_build_at(results, t, c)->known;
+static bool is_measured(const RtResults *results, RtClaimMeasure measure, const RtClaimCell *cell) {
+    const uint32_t t = cell->workload;
+    const RtClaimSubject subject = rt_claim_subject(measure);
+    if (subject == RT_SUBJECT_STRUCTURE) return rt_build_at(results, t, cell->candidate)->known;
+    if (subject >= RT_SUBJECT_SET && measure != RT_CLAIM_HITS)
+        return !isnan(whole_rays(results, t, RT_ALL_RAYS));
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtRayKind kind = (RtRayKind)k;
-        const uint32_t measured = rt_results_candidate(results, t, c, kind);
-        if ((asked == RT_ALL_RAYS || asked == kind) && rt_cell_at(results, t, measured, kind)->counted)
+        const uint32_t measured = rt_results_candidate(results, t, cell->candidate, kind);
+        if ((cell->kind == RT_ALL_RAYS || cell->kind == kind) &&
+            rt_cell_at(results, t, measured, kind)->counted)
             return true;
     }
     return false;
@@ -183,12 +276,12 @@ static bool is_measured(const RtResults *results, const RtClaim *claim, RtRayKin
 
 bool rt_claim_any_measured(const RtResults *results, const RtClaim *claim, const RtClaimPoint *points,
                            uint32_t count) {
+    const RtClaimMeasure second =
+        claim->form == RT_CLAIM_LEAST ? claim->first.measure : claim->second.measure;
     for (uint32_t i = 0; i < count; i++) {
         const RtClaimPoint *p = &points[i];
-        uint32_t other = p->candidate;
-        bool found = !*claim->other || find_other(results->experiment, claim, p->workload, other, &other);
-        if (found && is_measured(results, claim, p->kind, p->workload, p->candidate) &&
-            is_measured(results, claim, p->kind, p->workload, other))
+        if (p->found && is_measured(results, claim->first.measure, &p->at) &&
+            (!has_other(claim) || is_measured(results, second, &p->other)))
             return true;
     }
     return false;
@@ -202,16 +295,16 @@ static bool same_line(const RtExperiment *experiment, const RtClaim *claim, cons
     enum { ROOM = RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2) };
     char names[2][2 * ROOM];
     const RtClaimPoint *points[] = {a, b};
-    if (a->kind != b->kind) return false;
+    if (a->at.kind != b->at.kind) return false;
     for (int i = 0; i < 2; i++) {
-        const RtWorkload *workload = &experiment->workloads[points[i]->workload];
+        const RtWorkload *workload = &experiment->workloads[points[i]->at.workload];
         names[i][0] = '\0';
         if (!claim->by_objects) {
             snprintf(names[i], sizeof names[i], "%s ", workload->stem);
             rt_swept_name(&workload->swept, claim->key.scene ? claim->key.key : NULL, names[i],
                           sizeof names[i]);
         }
-        const RtCandidate *candidate = &experiment->candidates[points[i]->candidate];
+        const RtCandidate *candidate = &experiment->candidates[points[i]->at.candidate];
         rt_append_text(names[i], sizeof names[i], " %s", candidate->stem);
         rt_swept_name(&candidate->swept, claim->key.scene ? NULL : claim->key.key, names[i], sizeof names[i]);
     }
@@ -223,7 +316,7 @@ static int by_x(const void *a, const void *b) {
     const RtClaimPoint *p = a, *q = b;
     if (isnan(p->x) != isnan(q->x)) return isnan(p->x) ? -1 : 1;
     if (p->x != q->x && !isnan(p->x)) return p->x < q->x ? -1 : 1;
-    return (p->workload > q->workload) - (p->workload < q->workload);
+    return (p->at.workload > q->at.workload) - (p->at.workload < q->at.workload);
 }
 
 uint32_t rt_claim_line(const RtExperiment *experiment, const RtClaim *claim, RtClaimPoint *points,
@@ -245,8 +338,9 @@ const char *rt_claim_refusal(const RtResults *results, const RtClaim *claim) {
         const RtCandidate *candidate = &e->candidates[at.candidate];
         const RtBuildResult *build = rt_build_at(results, at.workload, at.candidate);
         const bool named =
-            is_called(e, claim, at.candidate) || rt_candidate_is_called(candidate, claim->other);
-        const bool here = !*claim->scene || rt_workload_is_called(&e->workloads[at.workload], claim->scene);
+            is_called(e, claim, at.candidate) || rt_candidate_is_called(candidate, claim->second.accel);
+        const char *scene = claim->first.scene;
+        const bool here = !*scene || rt_workload_is_called(&e->workloads[at.workload], scene);
         if (build->refused && named && here) return build->left_out;
     }
     return NULL;
@@ -283,6 +377,20 @@ static Moments moments_of(const RtClaimPoint *points, uint32_t count) {
     if (m.xx < 1e-24 * count) m.xx = 0;
     if (m.yy < 1e-24 * count) m.yy = 0;
     return m;
+}
+
+/* ---- means ---- */
+
+RtEstimate rt_claim_mean(const RtClaimPoint *points, uint32_t count) {
+    RtEstimate logs = {0};
+    if (!all_have_logarithms(points, count)) return rt_estimate_exactly((double)NAN);
+    for (uint32_t i = 0; i < count; i++) {
+        logs.median += rt_log(points[i].y.median) / count;
+        logs.low += rt_log(points[i].y.low) / count;
+        logs.high += rt_log(points[i].y.high) / count;
+    }
+    const double e = 2.718281828459045;
+    return (RtEstimate){rt_power(e, logs.median), rt_power(e, logs.low), rt_power(e, logs.high), -1};
 }
 
 /* ---- exponents ---- */

@@ -5,13 +5,13 @@
 
 #include "claims/claims.h"
 
-/* A cell. */
+/* A cell, and the one it is compared with. */
 typedef struct RtClaimPoint {
-    uint32_t workload, candidate;
-    RtRayKind kind; /* or RT_ALL_RAYS */
-    uint64_t rays;  /* measured: the fewest of both accelerators; UINT64_MAX if the claim is not of rays */
-    double x;       /* of the parameter; of a correlation: the first measure, NAN if unknown */
-    RtEstimate y;   /* the measure, or the ratio of a ratio or a crossover; NAN if unknown */
+    RtClaimCell at, other; /* the same without a second side */
+    bool found;            /* the second side has a cell */
+    uint64_t rays;         /* measured: the fewest of both; UINT64_MAX if the claim is not of rays */
+    double x;              /* of the parameter; of a correlation: the first measure, NAN if unknown */
+    RtEstimate y;          /* the measure, or the ratio to `other`; NAN if unknown */
 } RtClaimPoint;
 
 /* Whether x and y are known. An infinite break-even is known. */
@@ -23,6 +23,11 @@ typedef struct RtClaimCase {
     const RtClaim *claim;
     double coverage; /* of each interval of a tracing time */
 } RtClaimCase;
+
+/* One measure of one cell over another of another. Times of one scene and kind of rays are paired; of others
+ * the quotient of both estimates, with those of the intervals' ends. */
+RtEstimate rt_claim_ratio(const RtClaimCase *of, RtClaimMeasure over, const RtClaimCell *a,
+                          RtClaimMeasure under, const RtClaimCell *b);
 
 /* Writes the cells of a claim to points[0..workload_count * candidate_count * RT_RAY_KIND_COUNT), kind by
  * kind; returns their number. NULL: only their number. */
@@ -42,8 +47,11 @@ const char *rt_claim_refusal(const RtResults *results, const RtClaim *claim);
 
 /* ---- figures ---- */
 
-/* Exponents, correlations and crossovers are of logarithms, so values are above 0; otherwise the figure is
- * unknown. */
+/* Means, exponents, correlations and crossovers are of logarithms, so values are above 0; otherwise the
+ * figure is unknown. */
+
+/* The geometric mean. Its interval is that of the ends, which it covers if all intervals of y do. */
+RtEstimate rt_claim_mean(const RtClaimPoint *points, uint32_t count);
 
 /* The least-squares slope of log y over log x. The interval covers the slopes of all values within the
  * intervals of y, and 95 % of the slopes of a line round which the points scatter: Student's t with count - 2

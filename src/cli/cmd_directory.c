@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally merge, plot and report: result directories joined from shards, and their plots, reports and index
  * made again. */
-#include "claims/claims.h"
+#include "claims/findings.h"
 #include "cli/cli.h"
 #include "core/base/file.h"
 #include "core/base/words.h"
@@ -29,6 +29,7 @@ typedef struct Options {
     RtRunOptions how;   /* of `merge`; of `plot` only the allowed scripts */
     bool column;        /* of `plot` */
     const char *folder; /* of `report`, or NULL */
+    bool strict;        /* of `report` */
 } Options;
 
 #define ONE_DIRECTORY RT_ARGUMENT("DIR", directories[0], RT_DIRECTORY_MISSING)
@@ -68,7 +69,7 @@ RtStatus rt_command_merge(int argc, char **argv, RtError *error) {
     RT_OWNED(RtResults, results, rt_results_clear);
     static RtExperiment experiment;
     RT_TRY(rt_merge(o.directories, o.count, &o.how, &experiment, &results, error));
-    rt_print_summary(&results, stdout);
+    rt_print_summary(&results, o.how.directory, stdout);
     printf("\nReport: %s/report.html\n", o.how.directory);
     return RT_OK;
 }
@@ -122,11 +123,14 @@ RtStatus rt_command_plot(int argc, char **argv, RtError *error) {
 /* ---- report ---- */
 
 static RtStatus report(const char *directory, RtResults *results, const void *options, RtError *error) {
-    (void)options;
+    const Options *o = options;
+    const char *warning = results->experiment->warning.message;
+    if (*warning) fprintf(stderr, "raytally: %s\n", warning);
     RT_TRY(rt_report_write(results, directory, error));
     rt_claims_print(results, stdout);
+    rt_findings_print(results, directory, stdout);
     printf("%sReport: %s/report.html\n", results->experiment->claim_count ? "\n" : "", directory);
-    return RT_OK;
+    return o->strict ? rt_findings_check(results, directory, error) : RT_OK;
 }
 
 static void take_index(void *options, const char *text, struct argp_state *state) {
@@ -146,6 +150,8 @@ static const RtOption report_options[] = {
     {"index", 'i', "FOLDER", RT_TO_TAKE(take_index),
      "Write FOLDER/index.html and FOLDER/index.md, which list all result directories in FOLDER, as in "
      "`--index results`"},
+    {"strict", 0, NULL, RT_TO_FLAG(strict),
+     "Exit code 1 if a claim, an expression of the finding or a verdict on a paper does not hold"},
     {0}};
 const RtSyntax rt_report_syntax = {
     .options = report_options,

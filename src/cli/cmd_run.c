@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally run: experiments, from their YAML to result directories. */
-#include "claims/claims.h"
+#include "claims/findings.h"
 #include "cli/cli.h"
 #include "cli/jobs.h"
 #include "core/base/words.h"
@@ -78,7 +78,7 @@ static const RtOption options[] = {
     RT_UNTIL_OPTIONS(how.workload.until, how.workload.patience),
     {"quick", 0, NULL, RT_TO_FLAG(quick), "The smaller variant that the YAML describes under `quick`"},
     {"strict", 0, NULL, RT_TO_FLAG(strict),
-     "Exit code 1 if a claim of the experiment (`expect`) does not hold"},
+     "Exit code 1 if a claim of the experiment (`expect`, `finding`, `paper`) does not hold"},
     {"dry-run", 0, NULL, RT_TO_FLAG(dry), "Measure nothing: list the cells, and which of them are finished"},
     {"only", 0, "SCENE[/ACCEL[/KIND]]", RT_TO_TAKE(take_only),
      "Measure only the baseline and one scene, one accelerator on it, or one kind of rays, given by labels; "
@@ -157,11 +157,11 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     RtStatus status = rt_run_experiment(results, how, error);
     rt_progress_end(&progress);
     if (status != RT_OK) return status;
-    rt_print_summary(results, stdout);
+    rt_print_summary(results, o->how.directory, stdout);
     if (!how->workload.only.part_count && !how->workload.only.shards)
         printf("\nReport: %s/report.html\n", how->directory);
     RT_TRY(rt_results_check(results, error));
-    return o->strict ? rt_claims_check(results, error) : RT_OK;
+    return o->strict ? rt_findings_check(results, how->directory, error) : RT_OK;
 }
 
 static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {

@@ -60,7 +60,9 @@ const char *rt_paper_verdict_name(RtPaperVerdict verdict) {
                                         [RT_PAPER_CONFIRMED] = "confirmed",
                                         [RT_PAPER_IN_PART] = "in part",
                                         [RT_PAPER_NOT_CONFIRMED] = "not confirmed",
-                                        [RT_PAPER_TRUE_OF_ITS_MACHINE] = "true of its machine"};
+                                        [RT_PAPER_TRUE_OF_ITS_MACHINE] = "true of its machine",
+                                        [RT_PAPER_NOT_TESTED] = "not tested",
+                                        [RT_PAPER_NO_CLAIM] = "no claim"};
     return names[verdict];
 }
 

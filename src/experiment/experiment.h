@@ -19,7 +19,7 @@
 #define RT_MAX_WORKLOADS  32
 #define RT_MAX_CANDIDATES 256
 #define RT_MAX_PLOTS      8
-#define RT_MAX_CLAIMS     64
+#define RT_MAX_CLAIMS     128
 #define RT_MAX_CLAIM      256
 #define RT_MAX_PAPERS     16
 #define RT_MAX_OWN_BEST   8 /* settings of a best-of that an experiment lists itself */
@@ -113,6 +113,8 @@ typedef enum RtPaperVerdict {
     RT_PAPER_IN_PART,
     RT_PAPER_NOT_CONFIRMED,
     RT_PAPER_TRUE_OF_ITS_MACHINE,
+    RT_PAPER_NOT_TESTED,
+    RT_PAPER_NO_CLAIM, /* the sentence states nothing that can be tested */
     RT_PAPER_VERDICT_COUNT
 } RtPaperVerdict;
 
@@ -123,6 +125,8 @@ typedef struct RtPaper {
                                  words (rt_paper_is_seen) */
     char quote[RT_MAX_TEXT]; /* word for word, without quotation marks */
     RtPaperVerdict verdict;
+    char modelled[RT_MAX_TEXT];        /* how the paper's configuration is modelled, or "" */
+    uint32_t first_claim, claim_count; /* in RtExperiment.claims: what the verdict rests on */
 } RtPaper;
 
 typedef struct RtExperiment {
@@ -131,8 +135,9 @@ typedef struct RtExperiment {
     RtPaper papers[RT_MAX_PAPERS];
     uint32_t paper_count;
     char question[RT_MAX_TEXT], prediction[RT_MAX_TEXT];
-    char finding[RT_MAX_TEXT];                /* the conclusion, or "" */
-    char claims[RT_MAX_CLAIMS][RT_MAX_CLAIM]; /* experiment/claim.h */
+    char finding[RT_MAX_TEXT];                /* the conclusion (experiment/finding.h), or "" */
+    char not_shown[RT_MAX_TEXT];              /* what it does not show, or "" */
+    char claims[RT_MAX_CLAIMS][RT_MAX_CLAIM]; /* experiment/claim.h; those of papers come last */
     uint32_t claim_count;
     RtWorkload workloads[RT_MAX_WORKLOADS];
     uint32_t workload_count;
@@ -169,7 +174,7 @@ typedef struct RtExperiment {
      * accelerators. */
     const json_t *manifest;
     uint64_t fingerprint; /* of the YAML's bytes without the keys that affect no result: section, paper,
-                             expect, finding, plots */
+                             expect, finding, not_shown, plots */
     uint64_t fingerprint_with_plots; /* that of version 1.0 */
 } RtExperiment;
 
@@ -192,7 +197,8 @@ bool rt_experiment_has_hash(const RtExperiment *experiment, const json_t *hash);
 RtStatus rt_given_kind_parse(const char *name, RtRayKind *kind, RtError *error);
 const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind kind);
 
-/* "confirmed", "in part", "not confirmed", "true of its machine"; "not judged" before the run. */
+/* "confirmed", "in part", "not confirmed", "true of its machine", "not tested", "no claim"; "not judged"
+ * before the run. */
 const char *rt_paper_verdict_name(RtPaperVerdict verdict);
 
 /* Whether the paper was at hand, so that `quote` is word for word. */

@@ -7,6 +7,7 @@
 #include "core/text/yaml.h"
 #include "experiment/claim.h"
 #include "experiment/experiment.h"
+#include "experiment/finding.h"
 #include "render/frame.h"
 
 #include <string.h>
@@ -29,6 +30,13 @@ static RtStatus read_size(const RtYaml *y, const RtYamlNode *n, uint32_t *width,
     return rt_yaml_fail(y, rt_yaml_get(y, n, "size"),
                         "invalid value '%s': expected WIDTHxHEIGHT, each 1..%d, as in 512x512", text,
                         RT_MAX_IMAGE_SIDE);
+}
+
+/* Keeps the first warning. */
+static void warn(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment, const char *text) {
+    RtYaml warned = *y;
+    warned.error = &experiment->warning;
+    if (!*experiment->warning.message) rt_yaml_fail(&warned, n, "%s", text);
 }
 
 /* A list of up to `size` texts; without a list *count stays unchanged. */
@@ -190,7 +198,7 @@ static RtStatus read_lists(const RtYaml *y, const RtYamlNode *n, RtExperiment *e
 
 static RtStatus read_claims(const RtYaml *y, const RtYamlNode *list, RtExperiment *experiment,
                             RtError *error) {
-    RT_TRY(rt_yaml_list(y, list, NULL, 1, RT_MAX_CLAIMS, "claims"));
+    RT_TRY(rt_yaml_list(y, list, NULL, 1, RT_MAX_CLAIMS - experiment->claim_count, "claims"));
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
         RtClaim claim;
         char *text = experiment->claims[experiment->claim_count++];
@@ -207,25 +215,58 @@ static RtStatus read_paper_verdict(const RtYaml *y, const RtYamlNode *n, RtPaper
     for (*verdict = RT_PAPER_CONFIRMED; *verdict < RT_PAPER_VERDICT_COUNT; (*verdict)++) {
         if (strcmp(text, rt_paper_verdict_name(*verdict)) == 0) return RT_OK;
     }
-    return rt_yaml_fail(y, rt_yaml_get(y, n, "verdict"),
-                        "invalid value '%s': expected confirmed, in part, not confirmed, or true of its "
-                        "machine; before the run, leave it out",
-                        text);
+    return rt_yaml_fail(
+        y, rt_yaml_get(y, n, "verdict"),
+        "invalid value '%s': expected confirmed, in part, not confirmed, true of its machine, "
+        "not tested, or no claim; before the run, leave it out",
+        text);
+}
+
+/* What its parts leave open. */
+static void check_paper(const RtYaml *y, const RtYamlNode *n, const RtPaper *paper,
+                        RtExperiment *experiment) {
+    const bool tested = paper->verdict != RT_PAPER_UNJUDGED && paper->verdict < RT_PAPER_NOT_TESTED;
+    const RtYamlNode *verdict = rt_yaml_get(y, n, "verdict");
+    if (tested && !rt_paper_is_seen(paper))
+        warn(y, verdict, experiment,
+             "a paper that was not at hand (page: unseen) has the verdict 'not tested' or 'no claim'");
+    if (paper->verdict == RT_PAPER_CONFIRMED && !*paper->modelled)
+        warn(y, verdict, experiment,
+             "'confirmed' needs `modelled`: how the paper's own configuration is modelled");
+    if (tested && paper->claim_count == 0)
+        warn(y, verdict, experiment, "this verdict needs `expect`, the claims that it rests on");
 }
 
 /* One mapping, or a list of them. */
-static RtStatus read_papers(const RtYaml *y, const RtYamlNode *list, RtExperiment *experiment) {
+static RtStatus read_papers(const RtYaml *y, const RtYamlNode *list, RtExperiment *experiment,
+                            RtError *error) {
     const bool one = list && list->kind == RT_YAML_MAPPING;
     if (!one) RT_TRY(rt_yaml_list(y, list, NULL, 1, RT_MAX_PAPERS, "mappings with citation, page and quote"));
     const RtYamlNode *end = one ? list + list->size : rt_yaml_end(list);
     for (const RtYamlNode *n = one ? list : rt_yaml_first(list); n != end; n += n->size) {
         RtPaper *paper = &experiment->papers[experiment->paper_count++];
-        RT_TRY(rt_yaml_keys(y, n, "citation page quote verdict?"));
+        RT_TRY(rt_yaml_keys(y, n, "citation page quote verdict? modelled? expect?"));
         RT_TRY(rt_yaml_copy(y, n, "citation", RT_MAX_TEXT, paper->citation));
         RT_TRY(rt_yaml_copy(y, n, "page", RT_MAX_WORD, paper->page));
         RT_TRY(rt_yaml_copy(y, n, "quote", RT_MAX_TEXT, paper->quote));
+        RT_TRY(rt_yaml_copy(y, n, "modelled", RT_MAX_TEXT, paper->modelled));
         RT_TRY(read_paper_verdict(y, n, &paper->verdict));
+        paper->first_claim = experiment->claim_count;
+        RT_TRY(read_claims(y, rt_yaml_get(y, n, "expect"), experiment, error));
+        paper->claim_count = experiment->claim_count - paper->first_claim;
+        check_paper(y, n, paper, experiment);
     }
+    return RT_OK;
+}
+
+/* After all that its expressions may name. */
+static RtStatus read_finding(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment, RtError *error) {
+    RtError why = {RT_OK, ""};
+    RT_TRY(rt_yaml_copy(y, n, "finding", RT_MAX_TEXT, experiment->finding));
+    RT_TRY(rt_yaml_copy(y, n, "not_shown", RT_MAX_TEXT, experiment->not_shown));
+    RT_TRY(rt_yaml_place(y, rt_finding_check(experiment, experiment->finding, error), n, "finding"));
+    if (rt_finding_check_bound(experiment->finding, &why) != RT_OK)
+        warn(y, rt_yaml_get(y, n, "finding"), experiment, why.message);
     return RT_OK;
 }
 
@@ -249,13 +290,11 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
         "name section? paper? question prediction scenes accelerators baseline? rays? limit? coherent_run? "
         "rounds? builds? milliseconds? threads? seed? count_only? render? hardware? distributions? "
         "published? frame? "
-        "quick? plots? expect? finding? limits? format?"));
+        "quick? plots? expect? finding? not_shown? limits? format?"));
     RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_WORD, experiment->name));
     RT_TRY(rt_yaml_copy(y, n, "section", RT_MAX_WORD, experiment->section));
-    RT_TRY(read_papers(y, rt_yaml_get(y, n, "paper"), experiment));
     RT_TRY(rt_yaml_copy(y, n, "question", RT_MAX_TEXT, experiment->question));
     RT_TRY(rt_yaml_copy(y, n, "prediction", RT_MAX_TEXT, experiment->prediction));
-    RT_TRY(rt_yaml_copy(y, n, "finding", RT_MAX_TEXT, experiment->finding));
     RT_TRY(read_scale(y, n, &experiment->limit, &experiment->rounds, &experiment->builds,
                       &experiment->milliseconds));
     if (rt_yaml_get(y, n, "limits")) RT_TRY(read_limits(y, rt_yaml_get(y, n, "limits"), experiment));
@@ -265,11 +304,9 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(read_flag(y, n, "count_only", &experiment->count_only));
     RT_TRY(read_flag(y, n, "render", &experiment->render));
     RT_TRY(read_flag(y, n, "distributions", &experiment->distributions));
-    RtYaml warned = *y; /* experiments of version 1.0 may have hardware counters */
-    warned.error = &experiment->warning;
-    if (rt_yaml_get(y, n, "hardware"))
-        rt_yaml_fail(&warned, rt_yaml_get(y, n, "hardware"),
-                     "ignored: `perf stat` counts these now (docs/guide/faq.md)");
+    if (rt_yaml_get(y, n, "hardware")) /* of version 1.0 */
+        warn(y, rt_yaml_get(y, n, "hardware"), experiment,
+             "ignored: `perf stat` counts these now (docs/guide/faq.md)");
     RT_TRY(read_lists(y, n, experiment, error));
     const char *baseline = NULL;
     RT_TRY(rt_yaml_text(y, n, "baseline", RT_MAX_LABEL - 1, &baseline));
@@ -281,7 +318,9 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     char where[RT_MAX_LABEL] = "";
     RtStatus status = rt_experiment_check(experiment, where, error);
     RT_TRY(place(y, status, where));
-    return read_claims(y, rt_yaml_get(y, n, "expect"), experiment, error);
+    RT_TRY(read_claims(y, rt_yaml_get(y, n, "expect"), experiment, error));
+    RT_TRY(read_papers(y, rt_yaml_get(y, n, "paper"), experiment, error));
+    return read_finding(y, n, experiment, error);
 }
 
 /* ---- the fingerprint ---- */
@@ -295,7 +334,7 @@ static size_t begin_of(const char *text, size_t length, uint32_t line) {
 
 /* The keys that affect no result, and may be edited after the run. */
 static bool is_editable(const char *key, bool plots) {
-    static const char *const keys[] = {"section", "paper", "expect", "finding"};
+    static const char *const keys[] = {"section", "paper", "expect", "finding", "not_shown"};
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
         if (strcmp(key, keys[i]) == 0) return true;
     }

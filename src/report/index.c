@@ -24,6 +24,7 @@ typedef struct Entry {
     char name[RT_MAX_LABEL];   /* of the directory: one experiment may have several, of different systems */
     char section[RT_MAX_WORD]; /* or "" */
     char question[RT_MAX_TEXT], answer[MAX_ANSWER]; /* of the finding the first sentence */
+    char not_shown[RT_MAX_TEXT];
     char build[MAX_ORIGIN], machine[MAX_ORIGIN];
     char again[MAX_ORIGIN]; /* the build that counted some scenes again, or "" */
     char plot[RT_MAX_PATH]; /* seen from the index, or "" */
@@ -102,6 +103,18 @@ static void find_plot(Entry *entry, const char *directory, const char *place) {
     if (!*name || rt_path_join(place, name, entry->plot, NULL) != RT_OK) *entry->plot = '\0';
 }
 
+static RtStatus read_answer(const RtResults *results, const char *directory, Entry *entry, RtError *error) {
+    RtFinding finding;
+    RT_TRY(rt_finding_fill(results, directory, &finding, error));
+    char *text = rt_finding_text(&finding);
+    const char *answer = text && *text ? text : "No finding yet.";
+    snprintf(entry->answer, MAX_ANSWER, "%.*s", first_sentence(answer), answer);
+    strcpy(entry->not_shown, results->experiment->not_shown);
+    rt_free(text);
+    rt_finding_clear(&finding);
+    return RT_OK;
+}
+
 static RtStatus read_experiment(Index *index, Entry *entry, const char *directory, RtError *error) {
     RtExperiment *experiment = index->experiment;
     RtResults results;
@@ -109,13 +122,12 @@ static RtStatus read_experiment(Index *index, Entry *entry, const char *director
     RtStatus status = rt_results_load(directory, experiment, &results, error);
     if (status == RT_OK) status = rt_manifest_read(directory, &manifest, error);
     if (status == RT_OK) {
-        const char *finding = *experiment->finding ? experiment->finding : "No finding yet.";
         strcpy(entry->section, experiment->section);
         note_origin(entry, manifest);
         strcpy(entry->question, experiment->question);
-        snprintf(entry->answer, MAX_ANSWER, "%.*s", first_sentence(finding), finding);
+        status = read_answer(&results, directory, entry, error);
         json_object_set_new(index->verdicts, entry->name, rt_page_claims(&results));
-        json_t *papers = rt_page_papers(experiment);
+        json_t *papers = rt_page_papers(&results);
         json_array_extend(index->papers, papers);
         json_decref(papers);
     }
@@ -253,7 +265,10 @@ static void put_card(const Entry *entry, FILE *out) {
     else
         rt_html_put(out, entry->name);
     rt_html_wrap(out, "</h3>\n<p>", entry->question, "</p>\n<p><strong>");
-    rt_html_wrap(out, "", entry->answer, "</strong></p>\n</div></section>\n");
+    rt_html_wrap(out, "", entry->answer, "</strong></p>\n");
+    if (*entry->not_shown)
+        rt_html_wrap(out, "<p class=\"meta\">It does not show: ", entry->not_shown, "</p>\n");
+    fputs("</div></section>\n", out);
 }
 
 static void put_row(const Entry *entry, FILE *out) {
@@ -267,6 +282,10 @@ static void put_row(const Entry *entry, FILE *out) {
     put_markdown(out, question);
     fputs(" | ", out);
     put_markdown(out, entry->answer);
+    if (*entry->not_shown) {
+        fputs(" Not shown: ", out);
+        put_markdown(out, entry->not_shown);
+    }
     fputs(" |\n", out);
 }
 

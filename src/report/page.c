@@ -109,6 +109,24 @@ void rt_page_card(FILE *out, const char *title, const char *text) {
     rt_html_wrap(out, "<p>", text, "</p></section>\n");
 }
 
+void rt_page_finding(FILE *out, const RtFinding *finding) {
+    static const char *const classes[] = {[RT_FINDING_FIGURE] = "bound",
+                                          [RT_FINDING_UPHELD] = "bound",
+                                          [RT_FINDING_MISSING] = "bound open",
+                                          [RT_FINDING_BROKEN] = "bound false"};
+    fputs("<section class=\"card\"><h2>Finding</h2><p>", out);
+    for (uint32_t i = 0; i < finding->count; i++) {
+        const RtFindingSegment *segment = &finding->segments[i];
+        const char *name = classes[segment->mark];
+        if (name) rt_html_wrap(out, "<span class=\"", name, "\"");
+        if (name) rt_html_wrap(out, " title=\"", segment->note, "\">");
+        rt_html_put(out, segment->text);
+        if (*segment->said) rt_html_wrap(out, " [", segment->said, "]");
+        if (name) fputs("</span>", out);
+    }
+    fputs(finding->count ? "</p></section>\n" : "No finding yet.</p></section>\n", out);
+}
+
 json_t *rt_page_claims(const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
     json_t *claims = json_array();
@@ -126,14 +144,17 @@ json_t *rt_page_claims(const RtResults *results) {
                      level);
 }
 
-json_t *rt_page_papers(const RtExperiment *experiment) {
+json_t *rt_page_papers(const RtResults *results) {
+    const RtExperiment *experiment = results->experiment;
     json_t *papers = json_array();
     for (uint32_t i = 0; i < experiment->paper_count; i++) {
         const RtPaper *paper = &experiment->papers[i];
-        json_array_append_new(
-            papers, json_pack("{s:s, s:s, s:s, s:b, s:s, s:s}", "experiment", experiment->name, "citation",
-                              paper->citation, "page", paper->page, "seen", rt_paper_is_seen(paper), "quote",
-                              paper->quote, "verdict", rt_paper_verdict_name(paper->verdict)));
+        json_array_append_new(papers,
+                              json_pack("{s:s, s:s, s:s, s:b, s:s, s:s, s:s, s:s}", "experiment",
+                                        experiment->name, "citation", paper->citation, "page", paper->page,
+                                        "seen", rt_paper_is_seen(paper), "quote", paper->quote, "verdict",
+                                        rt_paper_verdict_name(paper->verdict), "problem",
+                                        rt_paper_problem(results, paper), "modelled", paper->modelled));
     }
     return papers;
 }

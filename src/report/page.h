@@ -5,7 +5,7 @@
 #ifndef RT_REPORT_PAGE_H
 #define RT_REPORT_PAGE_H
 
-#include "results/results.h"
+#include "claims/findings.h"
 
 #include <jansson.h>
 #include <stdio.h>
@@ -34,11 +34,15 @@ void rt_html_wrap(FILE *out, const char *before, const char *text, const char *a
 /* A heading with text below; nothing if the text is empty. */
 void rt_page_card(FILE *out, const char *title, const char *text);
 
+/* The same of the experiment's finding, whose figures and claims have a tooltip, and a mark where they do not
+ * hold (claims/findings.h). */
+void rt_page_finding(FILE *out, const RtFinding *finding);
+
 /* The claims of the experiment with their verdicts and figures, as data. */
 json_t *rt_page_claims(const RtResults *results);
 
-/* The sentences of the literature that the experiment tests, as data. */
-json_t *rt_page_papers(const RtExperiment *experiment);
+/* The sentences of the literature that the experiment tests, with what their verdicts lack, as data. */
+json_t *rt_page_papers(const RtResults *results);
 
 /* The name of a file beside the page, as in links; and a link to it. */
 void rt_page_path(FILE *out, const char *file);

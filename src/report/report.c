@@ -407,7 +407,7 @@ static json_t *data_of(const RtResults *results, const json_t *manifest, RtError
                   "interval", interval, "count_only", experiment->count_only, "null_runs", null_runs,
                   "learnt", learnt ? learnt : "", "left_out", left_out.data ? left_out.data : "", "counters",
                   counters, "colors", colors, "verdict", rt_page_claims(results), "papers",
-                  rt_page_papers(experiment), "frames", frames_of(results), "sections", tables_of(results));
+                  rt_page_papers(results), "frames", frames_of(results), "sections", tables_of(results));
     rt_free(learnt);
     rt_free(left_out.data);
     return data;
@@ -441,11 +441,15 @@ static void put_answer(FILE *out, const RtResults *results, const char *director
 static RtStatus put_page(FILE *out, const RtResults *results, const json_t *manifest, const char *directory,
                          RtError *error) {
     const RtExperiment *experiment = results->experiment;
+    RtFinding finding;
+    RT_TRY(rt_finding_fill(results, directory, &finding, error));
     rt_page_begin(out, experiment->name, false);
     rt_html_wrap(out, "<p class=\"lede\">", experiment->question, "</p>\n");
     put_answer(out, results, directory);
     fputs("<div id=\"verdict\"></div>\n", out); /* before the prediction */
-    rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "No finding yet.");
+    rt_page_finding(out, &finding);
+    rt_finding_clear(&finding);
+    rt_page_card(out, "What it does not show", experiment->not_shown);
     rt_page_card(out, "Prediction, written before the run", experiment->prediction);
     put_links(out, directory);
     put_plots(out, experiment, directory);

@@ -199,7 +199,25 @@ RT_TEST(a_best_of_stands_for_the_setting_that_is_chosen_for_each_kind_of_rays) {
 
 RT_TEST(a_claim_that_is_none_is_refused_with_what_would_be_right) {
     const char *const cases[][2] = {
-        {"grid is good", "'grid' is not a measure: choose one of time, object_tests"},
+        {"grids are good", "'grids' is not a measure: choose one of time, object_tests"},
+        {"grid is good", "found 'good', expected 'fastest'"},
+        {"grid is fastest", "'grid' names 3 accelerators: name one of them"},
+        {"bvh has least time of grid", "unexpected 'of' at its end"},
+        {"bvh has least rays", "rays does not rank accelerators"},
+        {"bvh has most steps", "found 'most', expected 'least'"},
+        {"rays of bvh for primary rays", "rays is the same for all accelerators: leave 'of bvh' out"},
+        {"count of time of bvh", "'count of' is followed by a claim, not by a figure"},
+        {"geometric mean of exponent of time of bvh in n", "a geometric mean is of values or of ratios"},
+        {"geometric mean time of bvh", "found 'time', expected 'of'"},
+        {"geometric mean of time of bvh falls with n", "found 'falls', expected"},
+        {"time of bvh as fast", "'fast' is not a format: choose one of times, percent"},
+        {"time of bvh as MB", "'as MB' does not fit time"},
+        {"steps of bvh as plain ms", "'as ms' does not fit steps"},
+        {"time of bvh as us > 5", "unexpected '>' at its end"},
+        {"ratio of time of bvh on balls to bvh on random", "the second side of the ratio is 3 cells"},
+        {"ratio of time of bvh on balls to bvh", "both sides of the ratio are the same cells"},
+        {"ratio of time of bvh at n=10 to bvh at n=11", "'11' is not a value of n"},
+        {"ratio of objects on balls to bvh", "'bvh' is not a measure"},
         {"object_test of grid < 5", "did you mean 'object_tests'?"},
         {"object_tests grid < 5", "found 'grid', expected 'of'"},
         {"object_tests of gird < 5", "'gird' is not the label of one of the accelerators: did you mean "

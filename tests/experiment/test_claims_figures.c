@@ -170,11 +170,11 @@ RT_TEST(equal_values_have_no_exponent_and_no_correlation) {
         for (uint32_t t = 0; t < 4; t++) {
             set_objects(t, objects);
             set(t, 0, 7 + t, 3.7, 3.7);
-            set(t, 1, objects, 3.7, 3.7);
+            for (uint32_t c = 1; c < 4; c++) set(t, c, t == 0 ? 7 + c : objects, 3.7, 3.7);
         }
         shows("exponent of object_tests of bvh in objects on random", "unknown over 3 values");
-        shows("correlation of object_tests and time of bvh on random", "unknown over 3 values");
-        shows("correlation of object_tests and time of grid:density=1 on random", "unknown over 3 values");
+        shows("correlation of object_tests and time of grid on random:n=10", "unknown over 3 values");
+        shows("correlation of object_tests and time of grid on random:n=100", "unknown over 3 values");
     }
 }
 
@@ -230,28 +230,41 @@ RT_TEST(a_curve_over_a_parameter_of_one_accelerator_crosses_the_value_of_the_oth
 RT_TEST(a_correlation_is_of_logarithms_and_has_fishers_interval) {
     static const double ns[] = {1, 100, 10, 1000};
     set_all();
-    for (uint32_t t = 0; t < 4; t++) set(t, 0, (uint64_t)pow(10, t + 1), ns[t], ns[t]);
-    shows("correlation of object_tests and time of bvh", "0.800 [-0.697, 0.996] over 4 values");
-    is_undecided("correlation of object_tests and time of bvh > 0.5", "");
-    holds("correlation of object_tests and time of bvh > -0.7", "");
-    is_undecided("correlation of object_tests and time of bvh on random > 0.3", "[-1.0, 1.0] over 3 values");
-    for (uint32_t t = 0; t < 4; t++) rt_build_at(&results, t, 0)->counts = true;
-    is_undecided("correlation of object_tests and extent_tests of bvh < 2", "unknown"); /* all 0 */
+    for (uint32_t c = 0; c < 4; c++) set(0, c, (uint64_t)pow(10, c + 1), ns[c], ns[c]);
+    shows("correlation of object_tests and time of all on random:n=10",
+          "0.800 [-0.697, 0.996] over 4 values (random:n=10)");
+    is_undecided("correlation of object_tests and time of all on random:n=10 > 0.5", "");
+    holds("correlation of object_tests and time of all on random:n=10 > -0.7", "");
+    is_undecided("correlation of object_tests and time of grid on random:n=10 > 0.3",
+                 "[-1.0, 1.0] over 3 values");
+    for (uint32_t c = 0; c < 4; c++) rt_build_at(&results, 0, c)->counts = true;
+    is_undecided("correlation of object_tests and extent_tests of all on random:n=10 < 2",
+                 "unknown"); /* all 0 */
+}
+
+/* Over both scenes r would be 0.6, which is that of the means. */
+RT_TEST(a_correlation_is_within_each_scene_and_a_claim_holds_for_each) {
+    set_all();
+    for (uint32_t c = 0; c < 4; c++) {
+        set(0, c, (uint64_t)pow(10, c), pow(10, 3 - c), pow(10, 3 - c));
+        set(1, c, (uint64_t)pow(10, c + 4), pow(10, c + 4), pow(10, c + 4));
+    }
+    is_false("correlation of object_tests and time of all > 0.9", "-1.00 over 4 values (random:n=10)");
+    shows("correlation of object_tests and time of all on random:n=100",
+          "1.00 [1.00, 1.00] over 4 values (random:n=100)");
+    shows("correlation of object_tests and time of bvh", "fewer than two values");
 }
 
 RT_TEST(a_correlation_of_all_leaves_out_structures_without_the_measure) {
     set_all();
-    for (uint32_t t = 0; t < 4; t++) {
-        for (uint32_t c = 0; c < 4; c++) {
-            RtBuildResult *build = rt_build_at(&results, t, c);
-            *build = (RtBuildResult){.known = true, .counts = true};
-            build->structure.predicted_cost = c < 2 ? 100 * pow(2, t + 3 * c) : NAN;
-        }
-        set(t, 1, 10, 800 * pow(2, t), 800 * pow(2, t)); /* each time as predicted, and bvh, too */
+    for (uint32_t c = 0; c < 4; c++) {
+        RtBuildResult *build = rt_build_at(&results, 0, c);
+        *build = (RtBuildResult){.known = true, .counts = true};
+        build->structure.predicted_cost = c < 2 ? 100 * pow(2, 3 * c) : NAN;
     }
-    holds("correlation of predicted_cost and time of all > 0.9", "over 8 values");
-    is_undecided("correlation of predicted_cost and time of grid > 0.9", "8 of 12 values are unknown");
-    shows("correlation of predicted_cost and time of all for primary rays", "over 8 values");
+    set(0, 1, 10, 800, 800); /* each time as predicted */
+    shows("correlation of predicted_cost and time of all on random:n=10", "over 2 values (random:n=10)");
+    shows("correlation of predicted_cost and time of grid on random:n=10", "2 of 3 values are unknown");
 }
 
 RT_TESTS(claims_figures, set_up_primary, tear_down)

@@ -114,8 +114,8 @@ PLACE_TEST(a_bad_paper_is_refused_with_its_line) {
         const char *key, *message;
     } cases[] = {
         {"paper: {citation: C, page: 1, quote: Q, verdict: partly}\n",
-         ":12:50: paper.verdict: invalid value 'partly': expected confirmed, in part, not confirmed, or "
-         "true"},
+         ":12:50: paper.verdict: invalid value 'partly': expected confirmed, in part, not confirmed, "
+         "true of its machine, not tested, or no claim"},
         {"paper: {citation: C, page: 1}\n", ":12:1: paper: 'quote' is missing"},
         {"paper: [{citation: C, page: 1, quote: Q, verdit: in part}]\n",
          ":12:42: paper[0]: unknown key 'verdit'"},
@@ -129,6 +129,57 @@ PLACE_TEST(a_bad_paper_is_refused_with_its_line) {
         write_changed(place, "small.yaml", claiming, "expect:\n", with);
         assert_bad_input(load_small(place, false, error), cases[i].message);
     }
+}
+
+/* The finding refers to the results in `out`, which are beside these. */
+PLACE_TEST(a_finding_is_filled_in_and_marked_where_it_does_not_hold) {
+    assert_runs(place, "run small.yaml --out out --threads 1");
+    write_changed(place, "small.yaml", claiming, "  - object_tests of bvh > 1000\n",
+                  "finding: >-\n  A ray takes {object_tests of bvh as plain} tests,\n"
+                  "  {as many: ratio of object_tests of bvh to bvh >= 1} as before\n"
+                  "  ({from out: object_tests of bvh as plain}),\n"
+                  "  and {never over a thousand: object_tests of grid > 1000}.\n"
+                  "not_shown: Anything timed.\n");
+    assert_runs(place, "run small.yaml --out again --threads 1");
+    assert_in_file(place, "output", "\nFinding:\n", "does not hold    never over a thousand\n");
+    assert_in_file(place, "again/report.html", "as many</span> as before",
+                   "title=\"object_tests of grid &gt; 1000: does not hold, ",
+                   "never over a thousand [does not hold]</span>",
+                   "<h2>What it does not show</h2><p>Anything timed.</p>");
+    assert_ends(place, "report again --strict", 1, "1 expression of the finding");
+    assert_runs(place, "report again");
+    assert_in_file(place, "output", "Finding:");
+    assert_runs(place, "report --index .");
+    assert_in_file(place, "index.md", "never over a thousand \\[does not hold\\].",
+                   "Not shown: Anything timed.");
+    assert_in_file(place, "index.html", "It does not show: Anything timed.");
+    write_changed(place, "small.yaml", claiming, "  - object_tests of bvh > 1000\n",
+                  "finding: It takes 3 tests.\n");
+    assert_runs(place, "run small.yaml --out again --threads 1 --resume --strict");
+    assert_in_file(place, "message", "small.yaml:14:10: finding: '3' stands outside braces");
+}
+
+PLACE_TEST(a_verdict_on_a_paper_that_its_claims_do_not_support_is_marked) {
+    static const char paper[] = "paper:\n  citation: C\n  page: 1\n  quote: Q\n  verdict: confirmed\n"
+                                "  modelled: as it is\n  expect: [object_tests of bvh > 1000]\ncount_only";
+    write_changed(place, "small.yaml", claiming, "count_only", paper);
+    OWNED_MEMORY char *text = read_in(place, "small.yaml");
+    assert_runs(place, "run small.yaml --out out --threads 1");
+    assert_in_file(place, "output", "not supported    'confirmed' for C: not all of its claims hold");
+    assert_in_file(place, "out/report.html", "\"problem\":\"not all of its claims hold\"",
+                   "\"modelled\":\"as it is\"");
+    assert_int_equal(raytally(place, "report out --strict"), 1);
+    write_changed(place, "small.yaml", text, "  modelled: as it is\n", "");
+    assert_runs(place, "run small.yaml --out out --threads 1 --resume");
+    assert_in_file(place, "message", "paper.verdict: 'confirmed' needs `modelled`");
+    write_changed(place, "small.yaml", text, "page: 1", "page: unseen");
+    assert_runs(place, "run small.yaml --dry-run");
+    assert_in_file(place, "message", "paper.verdict: a paper that was not at hand");
+    write_changed(place, "small.yaml", text, "  expect: [object_tests of bvh > 1000]\n", "");
+    assert_runs(place, "run small.yaml --dry-run");
+    assert_in_file(place, "message", "paper.verdict: this verdict needs `expect`");
+    write_changed(place, "small.yaml", text, "[object_tests of bvh > 1000]", "[object_tests of bhv > 1000]");
+    assert_bad_input(load_small(place, false, error), "paper.expect[0]: 'bhv' is not the label");
 }
 
 RT_TESTS(claims_run, NULL, NULL)

@@ -67,7 +67,7 @@ PLACE_TEST(a_bad_experiment_is_refused_with_its_line) {
         {"rounds: 3", "rays: [primary, sideways]", ":14:"},
         {"baseline: bvh", "baseline: octree", ":12:"},
         {"baseline: bvh", "baseline: brute", ":12:"},
-        {"baseline: bvh", "baseline: bvh:best", ":12:11: baseline: 'bvh:best' is neither a spec"},
+        {"baseline: bvh", "baseline: brute:best", ":12:11: baseline: 'brute:best' is neither a spec"},
         {"accel: bvh", "accel: bhv", ":9:"},
         {"density=4", "density=-4", ":10:"},
         {"label: grid", "label: bvh", ":10:"},

@@ -66,7 +66,7 @@ PLACE_TEST(a_resumed_run_keeps_the_builds_and_their_intervals) {
     OWNED_MEMORY char *journal = read_in(place, "out/cells.jsonl");
     assert_non_null(strstr(journal, line));
     assert_null(strstr(strstr(journal, line) + strlen(line), line));
-    assert_in_file(place, "out/times.csv", ",build_seconds,build_low,build_high,builds,bytes,", ",20,");
+    assert_in_file(place, "out/times.csv", ",build_seconds,build_low,build_high,builds,build_threads,bytes,", ",20,");
 }
 
 /* Of two lines about a cell the second counts: the times of the first are not those of its rounds. */

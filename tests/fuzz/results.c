@@ -2,7 +2,7 @@
 /* Targets that read experiments, specs, claims, and the files of result directories. */
 #include "fuzz.h"
 
-#include "claims/claims.h"
+#include "claims/findings.h"
 #include "compare/compare.h"
 #include "core/base/memory.h"
 #include "core/text/json.h"
@@ -134,7 +134,7 @@ static void use_results(void) {
     }
     rt_print_results(&results, RT_CELLS, out);
     rt_print_results(&results, RT_COUNTED_CELLS, out);
-    rt_print_summary(&results, out);
+    rt_print_summary(&results, fuzz_path("."), out);
     rt_print_left_out(&results, out);
     rt_print_frames(&results, out);
     rt_print_distributions(&results, out);

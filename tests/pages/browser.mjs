@@ -33,7 +33,7 @@ export async function openBrowser() {
     browserName: 'chrome',
     timeouts: { script: 300000, pageLoad: 300000 }, // milliseconds: beside other tests a frame drawn in software takes long
     'goog:chromeOptions': { args: ['--headless=new', '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-      '--disable-dev-shm-usage',
+      '--disable-dev-shm-usage', '--disable-gpu-rasterization',
       '--disable-background-networking', '--disable-component-update', '--no-first-run', '--hide-scrollbars'] },
     'goog:loggingPrefs': { browser: 'ALL', performance: 'ALL' } } } });
   const session = `${url}/session/${sessionId}`;

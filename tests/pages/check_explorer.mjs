@@ -217,7 +217,7 @@ try {
   explore('buffers.html', [buffers]);
   exploreScene('random:n=30000', 'deep.html', ['kd'], '--size', '8x6');
   explore('limited.html', ['brute'], '--megabytes', '1', '--size', '400x300');
-  await browser.size(1440, 900);
+  await browser.size(390, 300); // drawn in software, a frame of a large window takes seconds
   await browser.media('screen');
   await open('walk.html');
   holds(/^0 of [1-9]/.test((await shown()).step), 'the page opens before the first step');
@@ -229,7 +229,7 @@ try {
   await checkBuffers('buffers.html', buffers);
   await checkWithoutWebGL('walk.html');
   for (const width of [390, 768, 1440]) for (const scheme of ['light', 'dark']) await checkLooks('walk.html', width, scheme);
-  await browser.size(390, 300); // drawn in software, its boxes take seconds for each frame of a large window
+  await browser.size(390, 300);
   await open('deep.html');
   const legend = await browser.run("return document.querySelector('#legend').textContent;");
   holds(/no boxes of kd below level \d+: deeper leaves are missing/.test(legend), `leaves that are left out are told: ${legend}`);

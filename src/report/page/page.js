@@ -14,7 +14,9 @@
   // `code` and **bold** in sentences, as in Markdown.
   const markUp = (text) => text.split(/(`[^`]*`|\*\*.*?\*\*)/).map((part, i) => i % 2 === 0 ? part :
     part.startsWith('`') ? make('code', {}, part.slice(1, -1)) : make('b', {}, ...markUp(part.slice(2, -2))));
-  for (const text of all('.card p, .card strong')) if (!text.children.length) text.replaceChildren(...markUp(text.textContent));
+  for (const element of all('.card p, .card strong, .bound')) {
+    for (const text of [...element.childNodes]) if (text.nodeType === 3) text.replaceWith(...markUp(text.textContent));
+  }
 
   // ---- tables ----
 
@@ -120,9 +122,11 @@
   if (data.papers.length) {
     const names = ['citation', 'page', 'quote', 'verdict', 'experiment'];
     const quote = (paper) => paper.seen ? `“${paper.quote}”` : `${paper.quote} (in our words: the text was not at hand)`;
+    const verdict = (paper) => paper.problem ? `${paper.verdict} [not supported: ${paper.problem}]` : paper.verdict;
+    const modelled = (paper) => paper.modelled && ` Modelled: ${paper.modelled}`;
     put('From the literature', makeTable({ title: 'Sentences that are tested',
       columns: names.map((name) => ({ id: name, name: name === 'quote' ? 'sentence' : name, meaning: '', prose: name !== 'page' })),
-      rows: data.papers.map((paper) => ({ fields: [paper.citation, paper.page, quote(paper), paper.verdict, paper.experiment] })) }));
+      rows: data.papers.map((paper) => ({ fields: [paper.citation, paper.page, quote(paper) + modelled(paper), verdict(paper), paper.experiment] })) }));
   }
   const makeList = (pairs) => make('dl', {}, ...pairs.flatMap(([name, text]) => [make('dt', {}, name), make('dd', {}, String(text))]));
   if (data.manifest) {

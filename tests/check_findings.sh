@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# check_findings.sh: the findings of shipped experiments are bound to data, and their verdicts on papers to claims: reading one
+# warns of nothing, each says what it does not show, and all expressions hold over results/reference. Uses $RT_PROGRAM.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+. tests/testing.sh
+# Not yet rewritten.
+unbound="amanatides-woo-1987 amortised arena arena-streams bittner-2013 cleary-wyvill-1988 clustering coherence csg
+dammertz-2008 embree embree-ablation extent-cost first-look fujimoto-1986 glassner-1984 goldsmith-salmon-1987
+grid-density growth haines-greenberg-1986 havran-1999 havran-2000 intersection-share item-buffer jevans-wyvill-1989
+kay-kajiya-1986 lauterbach-2009 light-buffer macdonald-booth-1990 meister-bittner-2018 octree-grid octree-leaf
+overlays overview prediction recursion reshetov-2005 rubin-whitted-1980 stich-2009 tightness wald-2001 wald-2007
+wald-benthin-boulos-2008 wald-havran-2006 walter-2008 weghorst-1984 woop-2013 ylitie-2017"
+mkdir "$work/results"
+for directory in results/reference/*/; do
+    cp -r "$directory" "$work/results"
+done
+
+for yaml in experiments/*.yaml experiments/{lecture,papers}/*.yaml; do
+    name=$(sed -n 's/^name: //p' "$yaml") problem=
+    said=$("$program" run "$yaml" --dry-run --out "$work/dry/$name" 2>&1 >/dev/null | grep -E '(finding|paper).*: ')
+    grep -q '^not_shown:' "$yaml" || problem="$yaml: not_shown is missing"
+    [ -z "$said" ] || problem=$said
+    if [ -z "$problem" ] && [ -d "$work/results/$name" ]; then
+        "$program" report "$work/results/$name" --strict >"$work/printed" 2>&1 || problem=$(cat "$work/printed")
+    fi
+    if [[ " $(echo $unbound) " = *" $name "* ]]; then
+        [ -n "$problem" ] || complain "$name is bound: take it off the list in $0"
+    elif [ -n "$problem" ]; then
+        complain "$problem"
+    fi
+done
+conclude
