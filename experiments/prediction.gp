@@ -24,8 +24,8 @@ eval canvas("1-cost", 960, 420)
 set multiplot layout 1, n_kinds margins screen 0.075, 0.985, 0.14, 0.72 spacing screen 0.02, 0.1
 set logscale xy
 set grid xtics ytics
-set xrange [0.9 : 200]
-set yrange [0.9 : 200]
+set xrange [0.9 : 40]
+set yrange [0.9 : 40]
 set xlabel "cost / the least" textcolor rgb ink
 do for [k = 1:n_kinds] {
   set title word(kinds, k) font ",13" textcolor rgb ink
