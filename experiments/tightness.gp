@@ -3,6 +3,7 @@
 #: 1-tightness: Object tests per object hit, and time per ray, over the number of plane sets k of slabs, with box, sphere and
 #:   oriented box as level lines, for primary rays. Above: 1 is tight. Below: time over that of three sets, with intervals.
 
+all_scenes = scenes
 scenes = "balls jewel bunny"
 n_scenes = words(scenes)
 chosen(s) = strcol("scene") eq word(scenes, s) && strcol("kind") eq "primary"
@@ -48,3 +49,4 @@ do for [s = 1:n_scenes] {
 }
 unset multiplot
 unset output
+scenes = all_scenes

@@ -3,6 +3,7 @@
 #: 1-density: Time per ray over the density of the grid, for each kind of rays, with intervals. The black line without points is
 #:   the model of Cleary & Wyvill, scaled to the time of random rays at density 1. Some of the scenes.
 
+all_scenes = scenes
 scenes = "uniform:n=10000 clustered bunny tree stadium"
 
 labels = "grid no-mailbox"
@@ -37,3 +38,4 @@ do for [s = 1:words(scenes)] {
 }
 unset multiplot
 unset output
+scenes = all_scenes
