@@ -9,7 +9,7 @@ n_scenes = words(scenes)
 chosen(s) = strcol("scene") eq word(scenes, s) && strcol("kind") eq "primary"
 labelled(s, name) = chosen(s) && strcol("accel") eq name
 # The number of plane sets in a label such as slabs-7.
-k_of(label) = label[1:6] eq "slabs-" ? real(label[7:*]) : NaN
+k_of(label) = label[1:6] eq "slabs-" && !strstrt(label, "(again)") ? real(label[7:*]) : NaN
 others = "box sphere obb"
 
 # For the box, the sphere and the oriented box, which have no k: object tests per object hit, and the time.
