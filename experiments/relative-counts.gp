@@ -5,9 +5,12 @@
 
 set datafile separator tab
 n_scenes = words(scenes)
-first = system(tsv("counts.csv")[3:*]." | awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i } NR == 2 { print $at[\"accel\"] }'")
+# Those that are counted, in order: the best of several has no counts of its own.
+counted = system(tsv("counts.csv")[3:*]." | awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next } \
+!seen[$at[\"accel\"]]++ { printf \"%s \", $at[\"accel\"] }'")
+first = word(counted, 1)
 shown = ""
-do for [accel in accels] { if (accel ne first) { shown = shown.accel." " } }
+do for [accel in accels] { if (accel ne first && strstrt(" ".counted." ", " ".accel." ")) { shown = shown.accel." " } }
 n_shown = words(shown)
 row(name) = sum [i = 1:n_shown] (word(shown, i) eq name ? n_shown + 1 - i : 0)
 shift(s) = 0.7 / n_scenes * (0.5 * (n_scenes + 1) - s)

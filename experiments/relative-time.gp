@@ -6,8 +6,6 @@
 set datafile separator tab
 table = tsv("times.csv")
 n_scenes = words(scenes); n_kinds = words(kinds)
-baseline = system("awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == \"baseline\") back = NF - i } \
-NR == 2 { print $(NF - back) }' times.csv")   # counted from the end: commas within quotes come before it
 shown = ""
 do for [a = 1:words(accels)] { if (word(accels, a) ne baseline) { shown = shown.word(accels, a)." " } }
 n_shown = words(shown)

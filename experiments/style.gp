@@ -5,6 +5,7 @@
 #   accels, groups      labels of accelerators, and their groups
 #   colors, markers, dashes   of each accelerator
 #   kinds, sets         kinds of rays; SCENE/KIND=WEIGHT of each set of rays
+#   baseline            label of the accelerator that ratios refer to
 #   without, among      of `frame` in the experiment
 #   sweeps, axes        swept parameters, and "log", "linear" or "words" for each (sweeps.gp)
 #   experiment, format, paper, shared   its name; svg or pdf; column or page; the folder of this file

@@ -407,8 +407,8 @@ static void put_value(RtClaimResult *result, const RtClaim *claim, const Figure 
             put_one_crossover(result, claim, figures, figures->crossovers);
         else
             PUT(result, "unknown");
-    } else if (count == 1) {
-        put_estimate(result, claim, &figures->value);
+    } else if (count == 1 || least->value.median == most->value.median) {
+        put_estimate(result, claim, &least->value);
     } else {
         const bool falls = claim->format.scale < 0; /* the larger the value */
         put_number(result, claim, (falls ? most : least)->value.median);

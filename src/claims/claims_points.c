@@ -125,8 +125,8 @@ static bool is_about(const RtExperiment *experiment, const RtClaim *claim, const
     if (!is_called(experiment, claim, c)) return false;
     if (!rt_candidate_runs(experiment, c, t)) return false;
     if (!rt_claim_side_has(experiment, &claim->first, t, c)) return false;
-    const bool all = claim->form == RT_CLAIM_CROSSOVER && strcmp(claim->first.accel, RT_CLAIM_ALL) == 0;
-    return !all || !find_other(experiment, claim, cell, &other) || other.candidate != c;
+    const bool all = rt_claim_has_two_sides(claim) && strcmp(claim->first.accel, RT_CLAIM_ALL) == 0;
+    return !all || !find_other(experiment, claim, cell, &other) || memcmp(&other, cell, sizeof other) != 0;
 }
 
 /* Whether a measured structure has no such value: no prediction, no counts, or it is the baseline. */

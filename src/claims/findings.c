@@ -69,8 +69,8 @@ static void fill_segment(const RtResults *results, const RtFindingPiece *piece, 
     }
     const bool open = readout ? strcmp(result.value, "unknown") == 0 : result.verdict != RT_CLAIM_HOLDS;
     segment->said = !result.measured             ? "no measurements"
-                    : readout && !result.whole   ? "some values are unknown"
-                    : readout && result.contrary ? "the interval includes the contrary"
+                    : readout && !result.whole   ? "values missing"
+                    : readout && result.contrary ? "not surely so"
                     : open && readout            ? "undecided"
                     : open                       ? rt_claim_verdict_name(result.verdict)
                                                  : "";

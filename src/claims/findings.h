@@ -17,8 +17,8 @@ typedef struct RtFindingSegment {
     RtFindingMark mark;
     const char *said; /* beside it: "does not hold", "undecided", "no measurements"; "" if nothing is wrong */
     char text[RT_MAX_TEXT]; /* as a reader sees it */
-    char note[RT_MAX_CLAIM + RT_MAX_CLAIM_FIGURES +
-              64]; /* the expression, its verdict and figures; "" of text */
+    /* The expression, its verdict and figures; "" of text. */
+    char note[RT_MAX_CLAIM + RT_MAX_CLAIM_FIGURES + 64];
 } RtFindingSegment;
 
 typedef struct RtFinding {

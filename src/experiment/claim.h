@@ -26,7 +26,7 @@
  *                hits); of a scene: objects
  *
  * ACCEL and SCENE are labels, or the common part of the labels of a sweep. ACCEL may be `all`, every
- * accelerator of the list, in a crossover every one but the second; or the name of a baseline of several
+ * accelerator of the list except the second, if there is one; or the name of a baseline of several
  * settings ("embree:best"): the setting that is the fastest on each kind of rays. PARAM is a swept parameter:
  * n, or scene.n or accel.n if both have it; or, except in "at", `objects`, the number of objects of the
  * scene, however scenes are named. A claim covers every cell that it does not exclude, and holds if it holds

@@ -339,8 +339,8 @@ static void put_variables(const RtResults *results, const char *shared, const ch
             if (has_rows(results, c)) put_candidate(experiment, c, lists[i], out);
         }
     }
-    fprintf(out, "\"; without = \"%s\"; among = \"%s\"; kinds = \"", experiment->frame.without,
-            experiment->frame.among);
+    fprintf(out, "\"; baseline = \"%s\"; without = \"%s\"; among = \"%s\"; kinds = \"",
+            rt_baseline_label(experiment), experiment->frame.without, experiment->frame.among);
     for (uint32_t k = 0; k < experiment->kind_count; k++) {
         if (has_rays(results, experiment->kinds[k]))
             fprintf(out, "%s ", rt_ray_kind_name(experiment->kinds[k]));

@@ -349,10 +349,13 @@ static json_t *tables_of(const RtResults *results) {
         if (!results->workloads[t].known) continue;
         rt_results_say_part(results, 1u << t, rt_experiment_kinds(experiment), part);
         snprintf(caption, sizeof caption, "all kinds of rays together, %s", part);
+        char *choices = rt_choices_sentences(results, t);
         json_array_append_new(sections,
-                              json_pack("{s:s, s:[o], s:[o]}", "title", experiment->workloads[t].label,
-                                        "tables", table_of(results, t, RT_TOTALS_MORE, caption), "folded",
+                              json_pack("{s:s, s:[o], s:s, s:[o]}", "title", experiment->workloads[t].label,
+                                        "tables", table_of(results, t, RT_TOTALS_MORE, caption), "choices",
+                                        choices ? choices : "", "folded",
                                         table_of(results, t, RT_CELLS_MORE, "By kind of rays")));
+        rt_free(choices);
     }
     json_t *more = json_array();
     if (experiment->distributions)
@@ -413,21 +416,12 @@ static json_t *data_of(const RtResults *results, const json_t *manifest, RtError
     return data;
 }
 
-/* A paragraph; nothing for "" or NULL. Frees the text. */
-static void put_sentences(FILE *out, char *text) {
-    if (text && *text) rt_html_wrap(out, "<p>", text, "</p>\n");
-    rt_free(text);
-}
-
-/* For an experiment with frames: the fastest accelerators on each scene, as sentences and plot; page.js adds
- * the tables. */
+/* For an experiment with frames: their plot; page.js adds the tables. */
 static void put_answer(FILE *out, const RtResults *results, const char *directory) {
     const RtExperiment *experiment = results->experiment;
     char path[RT_MAX_PATH], text[RT_MAX_FRAME_TEXT];
     if (!*experiment->frame.without) return;
-    fputs("<section class=\"card\" id=\"answer\"><h2>Answer</h2>", out);
-    for (uint32_t t = 0; t < experiment->workload_count; t++)
-        put_sentences(out, rt_frame_sentence(results, t));
+    fputs("<section class=\"card\" id=\"answer\"><h2>Whole frames</h2>", out);
     rt_frame_legend(experiment, "\u2605", text);
     rt_html_wrap(out, "<p class=\"meta\">", text, " ");
     rt_html_wrap(out, "", experiment->frame.note, "</p>\n");

@@ -71,37 +71,24 @@ static double factor_of(const RtResults *results, uint32_t workload, uint32_t ca
     return of(results, workload, below) / of(results, workload, candidate);
 }
 
-/* Time, or object tests if nothing was timed. */
-static Measure *decisive(const RtExperiment *experiment) {
-    return experiment->count_only ? tests_of : seconds_of;
-}
-
-/* Of the compared accelerators, or of all, the one with the next greater measure after `previous`;
- * candidate_count before the first and after the last. The yardstick is left out. */
-static uint32_t next_of(const RtResults *results, uint32_t workload, Measure *of, bool all,
-                        uint32_t previous) {
+/* Of the compared accelerators the one that takes least time, or fewest object tests if nothing was timed;
+ * candidate_count if there is none. The yardstick is left out. */
+static uint32_t winner_of(const RtResults *results, uint32_t workload) {
     const RtExperiment *experiment = results->experiment;
-    const uint32_t none = experiment->candidate_count;
-    const double before = previous == none ? -INFINITY : of(results, workload, previous);
+    Measure *of = experiment->count_only ? tests_of : seconds_of;
+    uint32_t best = experiment->candidate_count;
     double least = INFINITY;
-    uint32_t best = none;
-    for (uint32_t c = 0; c < none; c++) {
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         const RtCandidate *candidate = &experiment->candidates[c];
-        const bool compared =
-            all || (strcmp(candidate->group, experiment->frame.among) == 0 && !is_overlay(experiment, c));
         const double own = of(results, workload, c);
-        const bool after = own > before || (own == before && c > previous);
-        if (!compared || candidate->tried || strcmp(candidate->spec, rt_accel_yardstick()) == 0) continue;
-        if (!rt_candidate_runs(experiment, c, workload) || !after || !(own < least)) continue;
+        if (strcmp(candidate->group, experiment->frame.among) != 0 || is_overlay(experiment, c) ||
+            candidate->tried || strcmp(candidate->spec, rt_accel_yardstick()) == 0 ||
+            !rt_candidate_runs(experiment, c, workload) || !(own < least))
+            continue;
         least = own;
         best = c;
     }
     return best;
-}
-
-static uint32_t winner_of(const RtResults *results, uint32_t workload) {
-    const RtExperiment *experiment = results->experiment;
-    return next_of(results, workload, decisive(experiment), false, experiment->candidate_count);
 }
 
 /* ---- the table ---- */
@@ -208,113 +195,7 @@ RtTable rt_frame_table(RtFrameRow *row) {
     return table;
 }
 
-/* ---- in words ---- */
-
-static const char *figure(double value, char size[16]) {
-    rt_format_figure(value, size);
-    return size;
-}
-
-/* Whether the intervals of two timed frames overlap. */
-static bool is_level(const RtResults *results, uint32_t t, uint32_t one, uint32_t other) {
-    const RtEstimate a = cost_of(results, t, one, RT_FRAME_ALL).seconds,
-                     b = cost_of(results, t, other, RT_FRAME_ALL).seconds;
-    return !results->experiment->count_only && a.low <= b.high && b.low <= a.high;
-}
-
-/* "octree follows with 230 times, grid with 122 (level with octree)." */
-static void say_followers(FILE *out, const RtResults *results, uint32_t t, uint32_t winner) {
-    const RtExperiment *experiment = results->experiment;
-    Measure *of = decisive(experiment);
-    char number[16];
-    uint32_t last = winner;
-    for (uint32_t c; (c = next_of(results, t, of, false, last)) < experiment->candidate_count; last = c) {
-        fprintf(out, last == winner ? " %s follows with %s times" : ", %s with %s",
-                rt_candidate_label(experiment, c), figure(factor_of(results, t, c, of), number));
-        if (is_level(results, t, last, c))
-            fprintf(out, " (level with %s)", rt_candidate_label(experiment, last));
-    }
-    fputs(last == winner ? "" : ".", out);
-}
-
-/* What the winner's time leaves out: who makes fewer object tests. */
-static void say_others(FILE *out, const RtResults *results, uint32_t t, uint32_t winner) {
-    const RtExperiment *experiment = results->experiment;
-    const uint32_t none = experiment->candidate_count;
-    const uint32_t fewest = next_of(results, t, tests_of, false, none);
-    char number[16];
-    if (fewest != none && tests_of(results, t, fewest) < tests_of(results, t, winner))
-        fprintf(out, " %s needs the fewest object tests: %s times fewer than %s.",
-                rt_candidate_label(experiment, fewest),
-                figure(factor_of(results, t, fewest, tests_of), number), experiment->frame.without);
-}
-
-/* "light+wide is 1.82 times as fast as wide alone, item+wide 1.12 times (level)." The overlays over candidate
- * `below`. */
-static void say_overlays(FILE *out, const RtResults *results, uint32_t t, uint32_t below) {
-    const RtExperiment *experiment = results->experiment;
-    const bool counted = experiment->count_only;
-    bool any = false;
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        const double gain = factor_of(results, t, c, decisive(experiment));
-        char number[16];
-        if (below_of(results, t, c) != below || isnan(gain)) continue;
-        figure(gain, number);
-        if (any)
-            fprintf(out, ", %s %s times", rt_candidate_label(experiment, c), number);
-        else
-            fprintf(out,
-                    counted ? " %s needs %s times fewer object tests than %s alone"
-                            : " %s is %s times as fast as %s alone",
-                    rt_candidate_label(experiment, c), number, rt_candidate_label(experiment, below));
-        if (is_level(results, t, c, below)) fputs(" (level)", out);
-        any = true;
-    }
-    if (any) fputc('.', out);
-}
-
-/* The fastest of all, and which are level with it. */
-static void say_fastest(FILE *out, const RtResults *results, uint32_t t) {
-    const RtExperiment *experiment = results->experiment;
-    const uint32_t none = experiment->candidate_count, best = next_of(results, t, seconds_of, true, none);
-    const uint32_t without = without_of(experiment, t);
-    char number[16];
-    bool any = false;
-    fprintf(out, " The fastest of all is %s: %s times as fast as %s", rt_candidate_label(experiment, best),
-            figure(seconds_of(results, t, without) / seconds_of(results, t, best), number),
-            experiment->frame.without);
-    for (uint32_t c = best; (c = next_of(results, t, seconds_of, true, c)) != none;) {
-        if (!is_level(results, t, best, c)) continue;
-        fprintf(out, "%s %s", any ? "," : " (level with", rt_candidate_label(experiment, c));
-        any = true;
-    }
-    fputs(any ? ")." : ".", out);
-}
-
-static void say_frame(FILE *out, const RtResults *results, uint32_t t, uint32_t winner) {
-    const RtExperiment *experiment = results->experiment;
-    const bool timed = !experiment->count_only;
-    char number[16];
-    fprintf(out, "On %s, %s is the %s of %s: ", experiment->workloads[t].label,
-            rt_candidate_label(experiment, winner), timed ? "fastest" : "best", experiment->frame.among);
-    if (timed)
-        fprintf(out, "%s times as fast, with ", figure(factor_of(results, t, winner, seconds_of), number));
-    fprintf(out, "%s times fewer object tests than %s.",
-            figure(factor_of(results, t, winner, tests_of), number), experiment->frame.without);
-    say_followers(out, results, t, winner);
-    if (timed) say_others(out, results, t, winner);
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) say_overlays(out, results, t, c);
-    if (timed) say_fastest(out, results, t);
-}
-
-char *rt_frame_sentence(const RtResults *results, uint32_t workload) {
-    const uint32_t winner = winner_of(results, workload);
-    RtMemoryFile memory;
-    RtError ignored;
-    if (rt_memory_file_open(&memory, &ignored) != RT_OK) return NULL;
-    if (winner < results->experiment->candidate_count) say_frame(memory.file, results, workload, winner);
-    return rt_memory_file_close(&memory, "sentences", &ignored) == RT_OK ? memory.data : NULL;
-}
+/* ---- to read ---- */
 
 void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_TEXT]) {
     const RtWorkloadResult *w = &results->workloads[workload];
@@ -332,15 +213,13 @@ void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX
              rays[RT_RAY_REFLECTION] + rays[RT_RAY_TRANSMISSION], part);
 }
 
-/* ---- to read ---- */
-
 void rt_frame_legend(const RtExperiment *experiment, const char *mark, char out[RT_MAX_FRAME_TEXT]) {
     snprintf(
         out, RT_MAX_FRAME_TEXT,
         "Mtests: object tests of a whole frame, in millions; ms: time to trace it; build: ms to build, both "
         "on one thread (--threads). fewer, faster: how many times, than %s; "
         "primary, shadow, bounce (reflection and transmission): how many times faster. -: no such rays, "
-        "or not counted. %s: the %s of %s. level: the difference is within the intervals of measurement.",
+        "or not counted. %s: the %s of %s.",
         experiment->frame.without, mark, experiment->count_only ? "best" : "fastest",
         experiment->frame.among);
 }

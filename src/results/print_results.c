@@ -55,32 +55,46 @@ static void print_ratios(const RtResults *results, uint32_t least, uint32_t most
     rt_print_wrapped(text, out);
 }
 
-/* "octree:best: octree-16 for primary and shadow rays; octree for diffuse rays." */
-static void print_choices(const RtResults *results, uint32_t t, FILE *out) {
+/* Prints and frees a text; nothing for "" or NULL. */
+static void print_text(char *text, FILE *out) {
+    if (text && *text) fputc('\n', out);
+    if (text && *text) rt_print_wrapped(text, out);
+    rt_free(text);
+}
+
+/* "octree:best, chosen by other rays: octree-16 (primary, shadow), octree (diffuse)." */
+static void say_choice(const RtResults *results, uint32_t t, uint32_t best, FILE *out) {
     const RtExperiment *experiment = results->experiment;
-    for (uint32_t best = 0; best < experiment->candidate_count; best++) {
-        const RtCandidate *candidate = &experiment->candidates[best];
-        char text[RT_MAX_SENTENCE];
-        bool any = false;
-        snprintf(text, sizeof text, "%s, chosen by other rays:", candidate->label);
-        for (uint32_t i = 0; i < candidate->member_count; i++) {
-            const char *names[RT_RAY_KIND_COUNT];
-            char list[128];
-            uint32_t count = 0;
-            for (uint32_t k = 0; k < experiment->kind_count; k++) {
-                const RtCell *cell = rt_cell_at(results, t, best, experiment->kinds[k]);
-                if (cell->chosen && cell->choice == candidate->members[i])
-                    names[count++] = rt_experiment_kind_name(experiment, experiment->kinds[k]);
-            }
-            if (count == 0) continue;
-            rt_join_names(names, count, list, sizeof list);
-            rt_append_text(text, sizeof text, "%s %s (%s)", any ? "," : "",
-                           experiment->candidates[candidate->members[i]].label, list);
-            any = true;
+    const RtCandidate *candidate = &experiment->candidates[best];
+    bool any = false;
+    for (uint32_t i = 0; i < candidate->member_count; i++) {
+        const char *names[RT_RAY_KIND_COUNT];
+        char list[128];
+        uint32_t count = 0;
+        for (uint32_t k = 0; k < experiment->kind_count; k++) {
+            const RtCell *cell = rt_cell_at(results, t, best, experiment->kinds[k]);
+            if (cell->chosen && cell->choice == candidate->members[i])
+                names[count++] = rt_experiment_kind_name(experiment, experiment->kinds[k]);
         }
-        rt_append_text(text, sizeof text, ".");
-        if (any) rt_print_wrapped(text, out);
+        if (count == 0) continue;
+        rt_join_names(names, count, list, sizeof list);
+        if (any)
+            fputc(',', out);
+        else
+            fprintf(out, "%s, chosen by other rays:", candidate->label);
+        fprintf(out, " %s (%s)", experiment->candidates[candidate->members[i]].label, list);
+        any = true;
     }
+    fputs(any ? ". " : "", out);
+}
+
+char *rt_choices_sentences(const RtResults *results, uint32_t workload) {
+    RtMemoryFile memory;
+    RtError ignored;
+    if (rt_memory_file_open(&memory, &ignored) != RT_OK) return NULL;
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++)
+        say_choice(results, workload, c, memory.file);
+    return rt_memory_file_close(&memory, "sentences", &ignored) == RT_OK ? memory.data : NULL;
 }
 
 /* Accelerators measured on a part of the rays: their ratios are not the quotients of the throughputs. */
@@ -195,13 +209,6 @@ char *rt_learnt_sentence(const RtResults *results) {
     return rt_memory_file_close(&memory, "a sentence", &ignored) == RT_OK ? memory.data : NULL;
 }
 
-/* Prints and frees a text; nothing for "" or NULL. */
-static void print_text(char *text, FILE *out) {
-    if (text && *text) fputc('\n', out);
-    if (text && *text) rt_print_wrapped(text, out);
-    rt_free(text);
-}
-
 /* ---- tables of a workload ---- */
 
 /* How often the structures were built. */
@@ -240,7 +247,7 @@ static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     rt_print_wrapped("Object tests, extent tests and steps are per ray.", out);
     if (timed) print_ratios(results, least, most, out);
     print_rows(results, timed ? RT_CELLS : RT_COUNTED_CELLS, t, out);
-    print_choices(results, t, out);
+    print_text(rt_choices_sentences(results, t), out);
     print_strides(results, t, timed, out);
     print_differing(results, t, out);
     print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
@@ -262,7 +269,7 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
             if (most > 0) print_ratios(results, least, most, out);
             explained |= most > 0;
             rt_table_text(&table, out);
-            print_choices(results, t, out);
+            print_text(rt_choices_sentences(results, t), out);
             print_differing(results, t, out);
         }
     }
@@ -356,7 +363,7 @@ void rt_print_outcome(const RtResults *results, FILE *out) {
     else
         rt_print_results(results, RT_TOTALS, out);
     for (uint32_t t = 0; frames && t < experiment->workload_count; t++)
-        print_text(rt_frame_sentence(results, t), out);
+        print_text(rt_choices_sentences(results, t), out);
     if (frames) print_text(rt_learnt_sentence(results), out);
     for (uint32_t t = 0; experiment->render && t < experiment->workload_count; t++) {
         if (!results->workloads[t].known) continue;

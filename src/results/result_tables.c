@@ -247,7 +247,8 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(interval, "ratio", interval, "", "throughput over the baseline's", estimate(&r->cost.ratio, 1))        \
     X(build_ms, "build ms", interval, "ms", "time to build the structure, with its interval",                \
       rt_build_ms(r->build))                                                                                 \
-    X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->structure.bytes)           \
+    X(mb, "MB", amount, "MB", "memory of the structure",                                                     \
+      r->build->known ? 1e-6 * (double)r->build->structure.bytes : (double)NAN)                              \
     X(break_even, "break-even (rays)", text, "rays",                                                         \
       "the number of rays, with its interval, for which it takes less time than the baseline, including "    \
       "both builds",                                                                                         \

@@ -96,9 +96,12 @@ void rt_print_null_runs(const RtResults *results, FILE *out);
 #define RT_MAX_SENTENCE 640
 void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]);
 
-/* A warning that names the workloads and kinds of rays which some accelerator was timed on so few of,
- * repeated so often, that processors learn them (RT_LEARNT_RAYS), and a remedy: for rt_free(). ""
- * if there are none, NULL if memory is short. */
+/* What each best-of chose on the workload, by kinds of rays: for rt_free(). "" without any, NULL if memory is
+ * short. */
+char *rt_choices_sentences(const RtResults *results, uint32_t workload);
+
+/* A warning that names the workloads and kinds of rays that caches have learnt (rt_cell_is_learnt), and a
+ * remedy; likewise. */
 char *rt_learnt_sentence(const RtResults *results);
 
 /* The least coverage of the intervals: "95 %", or less if rounds are too few. */
@@ -145,17 +148,12 @@ typedef struct RtFrameRow {
  * workload. The winner is marked as the best. */
 RtTable rt_frame_table(RtFrameRow *row);
 
-/* Which accelerator of the group is the fastest on a workload, by how much, and how the others and the
- * overlays compare; those whose intervals overlap are level: sentences, for rt_free(). "" if
- * unknown, NULL if memory is short. */
-char *rt_frame_sentence(const RtResults *results, uint32_t workload);
-
 /* The size of a workload's frame, its rays by kind, and how many were measured: "a frame of 256x256: 65536
  * primary, ... rays; of 326921 rays, 152585 measured". */
 #define RT_MAX_FRAME_TEXT 1024
 void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_TEXT]);
 
-/* Explains the columns of the tables to read, `mark` beside the fastest, and "level". */
+/* Explains the columns of the tables to read, and `mark` beside the fastest. */
 void rt_frame_legend(const RtExperiment *experiment, const char *mark, char out[RT_MAX_FRAME_TEXT]);
 
 /* Prints the tables of all known workloads. */

@@ -60,7 +60,7 @@ RT_TEST(a_figure_of_what_is_less_is_marked_where_it_may_be_more) {
     reads("{ratio of object_tests of bvh to grid:density=1 on balls for primary rays as percent less} tests",
           "77.0 % less tests");
     reads("{ratio of object_tests of bvh to grid:density=1 on balls for primary rays as percent more}",
-          "-77.0 % more [the interval includes the contrary]");
+          "-77.0 % more [not surely so]");
     fill("{ratio of time of bvh to grid:density=1 on random:n=100 for primary rays as percent less}");
     assert_int_equal(filled.broken, 1); /* 200 to 208 ns of 200 to 215 */
 }
@@ -71,7 +71,7 @@ RT_TEST(what_was_not_measured_is_said_and_breaks_nothing) {
     reads("{steps of bvh on balls} steps, {few on balls: object_tests of bvh on balls < 3}",
           "unknown [no measurements] steps, few on balls [no measurements]");
     assert_int_equal(filled.broken, 0);
-    reads("{object_tests of bvh}", "2.00 to 2.20 [some values are unknown]"); /* some are unknown */
+    reads("{object_tests of bvh}", "2.00 to 2.20 [values missing]"); /* some are unknown */
     assert_int_equal(filled.broken, 1);
     reads("{from nobody: time of bvh} and {from nobody: less: time of bvh < 3}",
           "unknown [no results] and less [no results]");

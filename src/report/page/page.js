@@ -69,8 +69,9 @@
     return box;
   };
   const makeDetails = (title, ...children) => make('details', {}, make('summary', {}, title), ...children);
-  const makeSection = ({ title, tables, folded }) => {
+  const makeSection = ({ title, tables, choices, folded }) => {
     const section = make('section', { className: 'scene-tables' }, make('h3', {}, title), ...tables.map(makeTable),
+      ...(choices ? [make('p', { className: 'meta' }, choices)] : []),
       ...folded.map((table) => makeDetails(table.title, makeTable(table))));
     section.dataset.scene = title;
     return section;
