@@ -9,7 +9,7 @@ measured(name) = strcol("accel")[1:strlen(name) + 1] eq name.":" && strstrt(strc
 names = "leaf depth:max_leaf_size=2 depth:max_leaf_size=16"
 files = "leaf depth-of-2 depth-of-16"
 columns = "accel.max_leaf_size accel.max_depth accel.max_depth"
-captions = "'most objects per leaf' 'largest depth' 'largest depth'"
+captions = "'leaf size' 'depth' 'depth'"
 set grid xtics ytics
 do for [p = 1:3] {
   name = word(names, p); by = word(columns, p)
