@@ -4,7 +4,7 @@
 #:   Medians with intervals, one marker per scene; right of 1 it is faster than Embree's best.
 
 n_scenes = words(scenes); n_kinds = words(kinds); n_accels = words(accels)
-is_embree(a) = word(accels, a)[1:7] eq "embree-"
+is_embree(a) = word(accels, a)[1:6] eq "embree"
 shown = ""
 do for [a = 1:n_accels] { if (!is_embree(a)) { shown = shown.sprintf("%d ", a) } }
 n_shown = words(shown)

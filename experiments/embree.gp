@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-# embree: throughput over that of Embree's best, by scene and ray kind; and each of Embree's settings compared with the best of
-# them. 1 is the best of Embree in both.
+# embree: throughput over that of Embree's best, by scene and ray kind.
 #: 1-embree: Throughput of our hierarchies over that of Embree's best, by ray kind, one panel per scene.
 #:   Medians with intervals where these are wider than the markers; above 1 ours is faster. All panels have one logarithmic scale.
-#: 2-settings: Throughput of each of Embree's settings over that of its best, by ray kind, one panel per scene.
-#:   One logarithmic scale. Filled: AVX-512, open: AVX2; markers show the query mode: one ray, packets of 8 and 16, streams. The medium
-#:   build is left of the high one.
 
 n_scenes = words(scenes); n_kinds = words(kinds); n_accels = words(accels)
 place(kind) = sum [k = 1:n_kinds] (word(kinds, k) eq kind ? k : 0)
 own(s, a) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a)
-is_embree(a) = word(accels, a)[1:7] eq "embree-"
+is_embree(a) = word(accels, a)[1:6] eq "embree"
 
-# Our own accelerators, and Embree's.
-ours = ""; theirs = ""
-do for [a = 1:n_accels] { if (is_embree(a)) { theirs = theirs.sprintf("%d ", a) } else { ours = ours.sprintf("%d ", a) } }
+# Our own accelerators.
+ours = ""
+do for [a = 1:n_accels] { if (!is_embree(a)) { ours = ours.sprintf("%d ", a) } }
 n_ours = words(ours)
 is_ours(name) = sum [i = 1:n_ours] (word(accels, int(word(ours, i))) eq name)
 stats "times.csv" using (is_ours(strcol("accel")) ? column("ratio_low") : NaN) nooutput
@@ -48,34 +44,6 @@ do for [s = 1:n_scenes] {
        for [i = 1:n_ours] a = int(word(ours, i)) "times.csv" \
          using (own(s, a) ? place(strcol("kind")) + shift(i) : NaN):(column("ratio")):(column("ratio_low")):(column("ratio_high")) \
          with yerrorbars linewidth 1.6 pointtype marker(a) pointsize 0.65 linecolor rgb color(a) title word(accels, a)
-}
-unset multiplot
-unset output
-
-# By query mode, from left to right in each kind: one ray, packets of 8 and 16, streams; the medium build
-# left of the high one.
-queries = "1 8 16 stream"
-open_mark(q) = int(word("6 4 8 12", q)) # the filled one is the next
-named(s, q, quality, isa) = strcol("scene") eq word(scenes, s) && \
-                            strcol("accel") eq sprintf("embree-%s-%s-%s", word(queries, q), quality, isa)
-at(s, q, isa) = named(s, q, "medium", isa) ? place(strcol("kind")) + 0.2 * (q - 2.5) - 0.03 : \
-                named(s, q, "high", isa) ? place(strcol("kind")) + 0.2 * (q - 2.5) + 0.03 : NaN
-
-key_rows = paper eq "column" ? 4 : 2
-height = height + 20 * key_rows - 20
-eval canvas("2-settings", wide, height)
-set multiplot layout rows, columns margins screen left, 0.985, 78.0 / height, 1 - (52.0 + 20 * key_rows) / height spacing screen 0.045, 105.0 / height
-set yrange [0.24 : 1.1]
-do for [s = 1:n_scenes] {
-  set title word(scenes, s) font ",14" textcolor rgb ink
-  set ylabel (s % columns == 1 ? "throughput / Embree's best" : "") textcolor rgb ink
-  if (s == 1) {
-    set key at screen 0.985, screen 1 - 8.0 / height right top vertical maxrows key_rows samplen 0.5 textcolor rgb ink
-  } else { unset key }
-  plot for [q = 1:4] "times.csv" using (at(s, q, "avx2")):(column("ratio")) \
-         with points pointtype open_mark(q) pointsize 0.65 linewidth 1.5 linecolor rgb hue(q) title "avx2, query=".word(queries, q), \
-       for [q = 1:4] "times.csv" using (at(s, q, "avx512")):(column("ratio")) \
-         with points pointtype open_mark(q) + 1 pointsize 0.65 linecolor rgb hue(q) title "avx512, query=".word(queries, q)
 }
 unset multiplot
 unset output

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# item-buffer: throughput of whole frames over that of Embree's best, by samples along a side, without the buffer's build and with
-# it in one frame or ten.
-#: 1-frames: Throughput of whole frames over that of Embree's best, over the samples along a side, without the buffer's build and
-#:   with it in one frame or ten. Logarithmic axes, one scale. Medians, with intervals without the build; above 1 the item buffer is faster.
+# item-buffer: throughput of whole frames over that of wide, by samples along a side, without the buffer's build and with it in one
+# frame or ten.
+#: 1-frames: Throughput of whole frames over that of wide, over the samples along a side, without the buffer's build and with it
+#:   in one frame or ten. Logarithmic axes, one scale. Medians, with intervals without the build; above 1 the item buffer is faster.
 #: 2-triangles: The same for a frame of 1024 x 1024 samples over the triangles of the dragon.
 
-names = "bunny dragon hall forest"
+names = "bunny dragon871k hall forest tetra"
 of(name) = strcol("scene")[1:strlen(name) + 1] eq name."-" && strcol("accel") eq "item"
 side(name) = of(name) ? column("width") : NaN
 
-# For `frames` frames including the build: Embree's time over ours; Embree's build is not counted.
+# For `frames` frames including the build: wide's time over the buffer's; wide's build is not counted.
 theirs(x) = column("ns") * column("ratio")
 with_build(frames) = theirs(0) / (column("ns") + 1e9 * column("build_seconds") / (frames * weight(0)))
 
@@ -27,7 +27,7 @@ height = 72 + 328 * rows
 eval canvas("1-frames", wide, height)
 set multiplot layout rows, columns margins screen 72.0 / wide, 0.985, 60.0 / height, 1 - 44.0 / height spacing screen 0.04, 108.0 / height
 set title "buffer built" font ",14" textcolor rgb ink
-set ylabel "throughput / Embree's best" textcolor rgb ink
+set ylabel "throughput / that of wide" textcolor rgb ink
 set key top right samplen 2 textcolor rgb ink
 plot 1 with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
      for [i = 1:words(names)] "times.csv" using (side(word(names, i))):(column("ratio")):(column("ratio_low")):(column("ratio_high")) \
@@ -51,7 +51,7 @@ set xtics auto
 set logscale x 10
 set format x "10^{%L}"
 set xlabel "triangles of the dragon, 1024 x 1024 samples" textcolor rgb ink
-set ylabel "throughput / Embree's best" textcolor rgb ink
+set ylabel "throughput / that of wide" textcolor rgb ink
 set key top left samplen 2 textcolor rgb ink
 unset title
 eval canvas("2-triangles", 480, 400)

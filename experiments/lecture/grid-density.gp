@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # grid-density: time per ray over the density of a grid, and the model of Cleary & Wyvill.
 #: 1-density: Time per ray over the density of the grid, for each kind of rays, with intervals. The black line without points is
-#:   the model of Cleary & Wyvill, scaled to the time of random rays at density 1.
+#:   the model of Cleary & Wyvill, scaled to the time of random rays at density 1. Some of the scenes.
+
+all_scenes = scenes
+scenes = "uniform:n=10000 clustered bunny tree stadium"
 
 labels = "grid no-mailbox"
 row(s, k, label) = strcol("scene") eq word(scenes, s) && strcol("kind") eq word(kinds, k) && measured(label)
@@ -17,8 +20,8 @@ set logscale y 10
 set grid xtics ytics
 stats "times.csv" using (column("ns")) nooutput
 set yrange [STATS_min / 1.3 : STATS_max * 1.3]
-set xrange [0.09 : 180]
-set xtics ("1/8" 0.125, "1" 1, "8" 8, "64" 64)
+set xrange [0.18 : 90]
+set xtics ("1/4" 0.25, "1" 1, "4" 4, "16" 16, "64" 64)
 set xlabel "voxels per object" textcolor rgb ink
 do for [s = 1:words(scenes)] {
   set title word(scenes, s) font ",13" textcolor rgb ink
@@ -35,3 +38,4 @@ do for [s = 1:words(scenes)] {
 }
 unset multiplot
 unset output
+scenes = all_scenes

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 # octree-leaf: time over the most objects per leaf and over the largest depth of an octree.
 #: 1-leaf: Time per ray over the most objects of an octant that is not divided, for each kind of rays, with intervals.
-#: 2-depth: Time per ray over the largest depth, leaves of two objects, for each kind of rays, with intervals.
+#: 2-depth-of-2: Time per ray over the largest depth, leaves of two objects, for each kind of rays, with intervals.
+#: 3-depth-of-16: The same with leaves of sixteen.
 
 row(s, k, name) = strcol("scene") eq word(scenes, s) && strcol("kind") eq word(kinds, k) && measured(name)
 measured(name) = strcol("accel")[1:strlen(name) + 1] eq name.":" && strstrt(strcol("accel"), "(again)") == 0
-names = "leaf depth"
-columns = "accel.max_leaf_size accel.max_depth"
-captions = "'most objects per leaf' 'largest depth'"
+names = "leaf depth:max_leaf_size=2 depth:max_leaf_size=16"
+files = "leaf depth-of-2 depth-of-16"
+columns = "accel.max_leaf_size accel.max_depth accel.max_depth"
+captions = "'leaf size' 'depth' 'depth'"
 set grid xtics ytics
-do for [p = 1:2] {
+do for [p = 1:3] {
   name = word(names, p); by = word(columns, p)
   unset logscale y
   set xrange [*:*]
@@ -19,8 +21,8 @@ do for [p = 1:2] {
   set format y "%h"
   set yrange [STATS_min / 1.3 : STATS_max * 1.3]
   if (p == 1) { set logscale x 2; set xrange [0.8 : 40]; set xtics (1, 2, 4, 8, 16, 32) } \
-  else { unset logscale x; set xrange [2.7 : 10.3]; set xtics 3, 1, 10 }
-  eval canvas(sprintf("%d-%s", p, name), 960, 380)
+  else { unset logscale x; set xrange [3.7 : 10.3]; set xtics 4, 2, 10 }
+  eval canvas(sprintf("%d-%s", p, word(files, p)), 960, 380)
   set multiplot layout 1, words(scenes) margins screen 0.095, 0.985, 0.16, 0.8 spacing screen 0.02, 0.1
   set xlabel word(captions, p) textcolor rgb ink
   do for [s = 1:words(scenes)] {
