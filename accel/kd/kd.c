@@ -267,7 +267,7 @@ const RtAccelOps rt_kd_ops = {
         "Wald & Havran 2006, On building fast kd-trees for Ray Tracing, and on doing that in O(N log N), "
         "RT'06",
     RT_PARAMS_OF(rt_kd_params),
-    RT_BEST("traversal_cost=0.3|1|2,max_leaf_size=0|4"),
+    RT_BEST("traversal_cost=1|0.3,overlap=box|exact"),
     .bytes = sizeof(RtKd),
     .build = rt_kd_build,
     .destroy = destroy,

@@ -20,8 +20,8 @@
 #include <stdatomic.h>
 
 #define RT_KD_PARAMS(X)                                                                                      \
-    X(RT_KD_TRAVERSAL_COST, "traversal_cost", RT_FLOAT("0.3", 0, 1000, "0|1|10"),                            \
-      "cost of visiting an inner node, in object tests", "measured")                                         \
+    X(RT_KD_TRAVERSAL_COST, "traversal_cost", RT_FLOAT("1", 0, 1000, "0|0.3|10"),                            \
+      "cost of visiting an inner node, in object tests", "measured: 0.94 of the time of 0.3 in the mean")    \
     X(RT_KD_EMPTY_BONUS, "empty_bonus", RT_FLOAT("0.2", 0, 1, "0|0.5|1"),                                    \
       "cost reduction, as a fraction, of a split that cuts off empty space", "Wald & Havran 2006")           \
     X(RT_KD_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("0", 0, 1e6, "1|2|1000000"),                              \

@@ -541,7 +541,8 @@ const RtAccelOps rt_octree_ops = {
     .paper = "Glassner 1984, Space Subdivision for Fast Ray Tracing, CG&A 4(10); Revelles, Ureña & Lastra "
              "2000, An Efficient Parametric Algorithm for Octree Traversal, WSCG",
     RT_PARAMS_OF(rt_octree_params),
-    RT_BEST("max_leaf_size=1|16|8|32,split=centre|cost"),
+    RT_BEST("max_leaf_size=16|8,split=centre|cost"),
+    .trial = "octree:max_leaf_size=1", /* a scene of few objects is not divided at the default */
     .bytes = sizeof(RtOctree),
     .build = rt_octree_build,
     .destroy = rt_octree_destroy,

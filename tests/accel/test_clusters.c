@@ -34,7 +34,7 @@ RT_TEST(widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_its_vi
         uint32_t interior;
         double cost;
     } rows[] = {
-        {"clusters:method=rubin-whitted", 5, (92 + 2 * 44 + 2 * 28 + 6 * 12) / 92.0},
+        {"clusters:method=rubin-whitted,width=2", 5, (92 + 2 * 44 + 2 * 28 + 6 * 12) / 92.0},
         {"clusters:method=rubin-whitted,width=3", 3, (92 + 44 + 28 + 6 * 12) / 92.0},
         {"clusters:method=rubin-whitted,width=4", 3, (92 + 2 * 28 + 6 * 12) / 92.0},
         {"clusters:method=rubin-whitted,width=16", 1, (92 + 6 * 12) / 92.0},
@@ -112,7 +112,7 @@ RT_TEST(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep) {
     assert_broken(&self->base, "children that are not there");
     rt_accel_destroy(&self->base);
 
-    self = open_valid(&three, "clusters:method=rubin-whitted,max_leaf_size=3");
+    self = open_valid(&three, "clusters:method=rubin-whitted,width=2,max_leaf_size=3");
     RtNode root = self->hierarchy.nodes[0];
     assert_int_equal(self->hierarchy.node_count, 5);
     assert_broken_by(&self->base, self->hierarchy.nodes[0], ((RtNode){root.box, 0, RT_NODE_LEAF | 3}),
@@ -126,7 +126,7 @@ RT_TEST(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep) {
     rt_accel_destroy(&self->base);
 
     /* A chain by hand: node 2 i has a leaf and the rest. */
-    self = open_valid(&row, "clusters");
+    self = open_valid(&row, "clusters:width=2");
     for (uint32_t i = 0; i < COUNT; i++) {
         self->hierarchy.ids[i] = i;
         uint32_t leaf = i + 1 < COUNT ? 2 * i + 1 : 2 * i;

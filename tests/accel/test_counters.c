@@ -128,28 +128,34 @@ static const Row rows[] = {
     /* octree: an extent test for the box of the root; a step per node visited. The root is cut at (2, 0.5,
      * 0.5) into eight leaves, four of which hold sphere 0, four sphere 1. THROUGH runs in two of the planes,
      * so beside the root it visits all four of sphere 0; those of sphere 1 begin beyond the hit. */
-    {"octree:traversal=parametric", THROUGH, NEAREST, {HITS(1), VISITS(1, 5, 4), .repeats_avoided = 3}},
-    {"octree:traversal=points", THROUGH, NEAREST, {HITS(1), VISITS(1, 5, 4), .repeats_avoided = 3}},
-    {"octree:traversal=neighbours,mailbox=off", THROUGH, NEAREST, {HITS(4), VISITS(1, 5, 4)}},
-    {"octree:traversal=points", THROUGH, ANY, {HITS(1), VISITS(1, 2, 1)}},
+    {"octree:max_leaf_size=1,traversal=parametric",
+     THROUGH,
+     NEAREST,
+     {HITS(1), VISITS(1, 5, 4), .repeats_avoided = 3}},
+    {"octree:max_leaf_size=1,traversal=points",
+     THROUGH,
+     NEAREST,
+     {HITS(1), VISITS(1, 5, 4), .repeats_avoided = 3}},
+    {"octree:max_leaf_size=1,traversal=neighbours,mailbox=off", THROUGH, NEAREST, {HITS(4), VISITS(1, 5, 4)}},
+    {"octree:max_leaf_size=1,traversal=points", THROUGH, ANY, {HITS(1), VISITS(1, 2, 1)}},
     /* The root and two leaves; sought from the root, or from their common ancestor, the root counts twice.
      * Who goes by neighbours learns at the root that there is none behind the second: a third time. */
-    {"octree:traversal=parametric", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 3, 2)}},
-    {"octree:traversal=points", BETWEEN, ANY, {MISSES(2), VISITS(1, 4, 2)}},
-    {"octree:traversal=neighbours", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 5, 2)}},
-    {"octree", BESIDE, NEAREST, {MISSES(0), .extent_tests = 1}},
+    {"octree:max_leaf_size=1,traversal=parametric", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 3, 2)}},
+    {"octree:max_leaf_size=1,traversal=points", BETWEEN, ANY, {MISSES(2), VISITS(1, 4, 2)}},
+    {"octree:max_leaf_size=1,traversal=neighbours", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 5, 2)}},
+    {"octree:max_leaf_size=1", BESIDE, NEAREST, {MISSES(0), .extent_tests = 1}},
 
     /* kd: an extent test for the cell of the root; a step per node visited. The root is cut at x = 1, sphere
      * 0 being the lower leaf; what is above is cut at x = 3 into an empty leaf and that of sphere 1. */
-    {"kd", THROUGH, NEAREST, {HITS(1), VISITS(1, 2, 1)}},
-    {"kd", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 5, 3), .empty_steps = 1}},
-    {"kd:overlap=exact", BETWEEN, ANY, {MISSES(2), VISITS(1, 5, 3), .empty_steps = 1}},
+    {"kd:traversal_cost=0.3", THROUGH, NEAREST, {HITS(1), VISITS(1, 2, 1)}},
+    {"kd:traversal_cost=0.3", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 5, 3), .empty_steps = 1}},
+    {"kd:traversal_cost=0.3,overlap=exact", BETWEEN, ANY, {MISSES(2), VISITS(1, 5, 3), .empty_steps = 1}},
     {"kd:max_leaf_size=1", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 3, 2)}},
     /* A visit that costs ten object tests saves nothing here: the root is a leaf of two, or its children are
      * leaves if one split need not. */
     {"kd:traversal_cost=10,failures=0", THROUGH, NEAREST, {HITS(2), VISITS(1, 1, 1)}},
     {"kd:traversal_cost=10,failures=1", BETWEEN, ANY, {MISSES(2), VISITS(1, 3, 2)}},
-    {"kd", BESIDE, NEAREST, {MISSES(0), .extent_tests = 1}},
+    {"kd:traversal_cost=0.3", BESIDE, NEAREST, {MISSES(0), .extent_tests = 1}},
 
     /* extents: a step and an extent test per object, until the search is over; sphere 1 begins beyond the hit
      * on sphere 0. BETWEEN is inside the boxes, but 0.64 from the centres of the spheres; of slabs, the three

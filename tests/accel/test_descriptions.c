@@ -98,7 +98,7 @@ static const struct {
     {"octree:traversal=parametric,mailbox=off", true},
     {"octree:traversal=points,mailbox=off", true},
     {"octree:traversal=neighbours,mailbox=off", true},
-    {"octree:split=cost,traversal=neighbours,mailbox=off", true},
+    {"octree:max_leaf_size=1,split=cost,traversal=neighbours,mailbox=off", true},
     {"kd:mailbox=off", false},
     {"kd:mailbox=off,overlap=exact,traversal_cost=3,failures=9", false},
     {"kd:mailbox=off,max_leaf_size=6", true},

@@ -92,7 +92,7 @@ RT_TEST(a_flat_scene_is_divided_within_its_plane) {
     OWNED_SCENE scene = begin_scene();
     for (int i = 0; i < 64; i++) add_floor(&scene, 2 * (float)(i % 8), (float)(i - i % 8) / 4, 5, 1);
     assert_ok(rt_scene_finish(&scene, error));
-    OWNED_ACCEL RtKd *kd = open_valid(&scene, "kd");
+    OWNED_ACCEL RtKd *kd = open_valid(&scene, "kd:traversal_cost=0.3");
     assert_int_equal(kd->id_count, 64);
     for (uint32_t i = 0; i < kd->node_count; i++)
         assert_true(rt_kd_is_leaf(&kd->nodes[i]) ? rt_kd_length(&kd->nodes[i]) <= 1

@@ -16,7 +16,7 @@ static RtScene make_spheres_at(const float *x, int count) {
 /* The planes of the root's split go halfway through the box, where all eight spheres touch one another's. */
 RT_TEST(objects_go_into_every_leaf_they_touch) {
     OWNED_SCENE scene = make_lattice(2, 2, 2);
-    RtDescription d = describe_spec(&scene, "octree:max_depth=1");
+    RtDescription d = describe_spec(&scene, "octree:max_leaf_size=1,max_depth=1");
     assert_int_equal(d.interior, 1);
     assert_int_equal(d.leaves, 8);
     assert_int_equal(d.references, 64);
@@ -29,8 +29,8 @@ RT_TEST(objects_go_into_every_leaf_they_touch) {
 /* The mean of three spheres at 0, 1 and 9 is 10/3, where most of them are; the centre is 4.5. */
 RT_TEST(a_split_by_cost_is_nearer_to_the_objects) {
     OWNED_SCENE apart = make_spheres_at((const float[]){0, 1, 9}, 3);
-    OWNED_ACCEL RtOctree *centre = open_valid(&apart, "octree:split=centre");
-    OWNED_ACCEL RtOctree *cost = open_valid(&apart, "octree:split=cost");
+    OWNED_ACCEL RtOctree *centre = open_valid(&apart, "octree:max_leaf_size=1,split=centre");
+    OWNED_ACCEL RtOctree *cost = open_valid(&apart, "octree:max_leaf_size=1,split=cost");
     assert_true(centre->nodes[0].split.x == 4.5f);
     assert_true(cost->nodes[0].split.x < 4.5f && cost->nodes[0].split.x >= 1);
     assert_ok(rt_accel_validate(&cost->base, error));
@@ -47,10 +47,10 @@ RT_TEST(coincident_objects_stay_in_one_leaf) {
 /* Spheres at -2 and 2, with boxes up to 1.75 away from the plane between. */
 RT_TEST(slack_grows_the_boxes_of_objects) {
     OWNED_SCENE apart = make_spheres_at((const float[]){-2, 2}, 2);
-    assert_int_equal(describe_spec(&apart, "octree:max_depth=1").references, 8);
-    assert_int_equal(describe_spec(&apart, "octree:max_depth=1,slack=1.74").references, 8);
-    assert_int_equal(describe_spec(&apart, "octree:max_depth=1,slack=1.76").references, 16);
-    OWNED_ACCEL RtOctree *tree = open_valid(&apart, "octree:max_depth=1,slack=1.76");
+    assert_int_equal(describe_spec(&apart, "octree:max_leaf_size=1,max_depth=1").references, 8);
+    assert_int_equal(describe_spec(&apart, "octree:max_leaf_size=1,max_depth=1,slack=1.74").references, 8);
+    assert_int_equal(describe_spec(&apart, "octree:max_leaf_size=1,max_depth=1,slack=1.76").references, 16);
+    OWNED_ACCEL RtOctree *tree = open_valid(&apart, "octree:max_leaf_size=1,max_depth=1,slack=1.76");
     assert_broken_by(&tree->base, tree->slack, 0, "which it does not touch");
 }
 
@@ -63,7 +63,7 @@ static uint32_t find_leaf(const RtOctree *tree, uint32_t least) {
 
 RT_TEST(validate_names_each_invariant_that_is_broken) {
     OWNED_SCENE scene = make_lattice(4, 4, 4);
-    OWNED_ACCEL RtOctree *tree = open_valid(&scene, "octree:max_depth=3,margin=0.1");
+    OWNED_ACCEL RtOctree *tree = open_valid(&scene, "octree:max_leaf_size=1,max_depth=3,margin=0.1");
     const RtAccel *accel = &tree->base;
     RtOctreeNode *root = &tree->nodes[0], *leaf = &tree->nodes[find_leaf(tree, 2)];
     assert_broken_by(accel, tree->boxes[0].hi.z, 1, "root does not contain");
@@ -93,7 +93,7 @@ RT_TEST(an_octree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
     RtValue values[RT_OCTREE_PARAM_COUNT];
     long depth;
     const uint64_t limit = 1 << 16;
-    parse("max_depth=20,margin=0.01", values);
+    parse("max_leaf_size=1,max_depth=20,margin=0.01", values);
     assert_true(refused_bytes("octree", limit, &scene, values, &depth) > (double)limit);
 
     assert_true(fits_within("octree", limit, &scene, values, &values[RT_OCTREE_MAX_DEPTH], depth));
@@ -104,7 +104,8 @@ RT_TEST(an_octree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
 RT_TEST(far_too_deep_an_octree_is_refused_by_an_estimate) {
     static const char *const scenes[] = {"balls", "tetra", "random:n=20000,radius=1",
                                          "random:n=5000,distribution=stadium"};
-    static const char *const specs[] = {"max_depth=20", "max_depth=20,split=cost",
+    static const char *const specs[] = {"max_leaf_size=1,max_depth=20",
+                                        "max_leaf_size=1,max_depth=20,split=cost",
                                         "max_depth=20,max_leaf_size=3,margin=0.01"};
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
         OWNED_SCENE scene = open_scene(scenes[i]);
@@ -123,7 +124,8 @@ RT_TEST(far_too_deep_an_octree_is_refused_by_an_estimate) {
 }
 
 RT_TEST(the_estimate_is_near_what_a_build_takes) {
-    static const char *const specs[] = {"max_depth=9", "max_depth=8,split=cost",
+    static const char *const specs[] = {"max_leaf_size=1,max_depth=9",
+                                        "max_leaf_size=1,max_depth=8,split=cost",
                                         "max_depth=9,max_leaf_size=3"};
     OWNED_SCENE scene = open_scene("balls");
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
@@ -144,8 +146,9 @@ RT_TEST(the_estimate_is_near_what_a_build_takes) {
 /* Combinations that the spread of the conformance test does not contain. */
 RT_TEST(every_traversal_answers_like_brute_in_every_structure) {
     static const char *const traversals[] = {"points", "neighbours", "parametric"};
-    static const char *const settings[] = {"split=cost,mailbox=off", "margin=0.3,max_leaf_size=3",
-                                           "max_depth=0", "max_depth=6,mailbox=off"};
+    static const char *const settings[] = {"max_leaf_size=1,split=cost,mailbox=off",
+                                           "margin=0.3,max_leaf_size=3", "max_depth=0",
+                                           "max_leaf_size=1,max_depth=6,mailbox=off"};
     for (size_t s = 0; s < rt_family_count(); s++) {
         OWNED_BENCH bench;
         set_up_family(&bench, s, 7, 32);

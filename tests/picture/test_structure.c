@@ -116,7 +116,7 @@ static void check_ball(void *context, const RtBoxView *view) {
 RT_TEST(spheres_are_outlined_by_circles_and_cut_in_circles) {
     int count = 0;
     OWNED_SCENE scene = five_balls();
-    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "clusters:extent=sphere");
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "clusters:width=2,extent=sphere");
     accel->ops->each_box(accel, (RtBoxViewer){check_ball, &count});
     assert_int_equal(count, 9);
 }
