@@ -40,7 +40,7 @@ static bool must_choose(const RtWorkloadState *workload, uint32_t best, RtRayKin
 }
 
 static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
-    for (uint32_t c = 0; c < workload->experiment->candidate_count && !workload->count_only; c++) {
+    for (uint32_t c = 0; c < workload->experiment->candidate_count && rt_workload_is_timed(workload); c++) {
         if (must_choose(workload, c, kind)) return false;
     }
     for (uint32_t c = 0; c < workload->count; c++) {
@@ -178,7 +178,7 @@ static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
     uint64_t whole_rays[RT_RAY_KIND_COUNT] = {0};
     RT_TRY(rt_workload_record(workload->experiment, workload->index, workload->options->threads,
                               workload->scene, &workload->reference, workload->sets,
-                              workload->count_only ? NULL : workload->others, whole_rays, error));
+                              rt_workload_is_timed(workload) ? workload->others : NULL, whole_rays, error));
     RtWorkloadResult *result = &workload->results->workloads[workload->index];
     RtWorkloadResult now = {.known = true,
                             .objects = workload->scene->geometry.object_count,

@@ -113,12 +113,8 @@ static RtEstimate estimate_of(const Builds *builds, uint32_t *count) {
     return rt_estimate(builds->seconds, *count);
 }
 
-static bool times_builds(const RtWorkloadState *workload) {
-    return !workload->count_only && !workload->options->timer;
-}
-
 static int build_threads(const RtWorkloadState *workload) {
-    return times_builds(workload) ? workload->options->timing : workload->options->threads;
+    return rt_workload_is_timed(workload) ? workload->options->timing : workload->options->threads;
 }
 
 /* Builds a structure in place of the one before. */
@@ -233,7 +229,7 @@ static RtStatus keep_result(const Builds *builds, RtError *error) {
 RtStatus rt_workload_build(RtWorkloadState *workload, RtError *error) {
     RT_ARENA(arena);
     const RtExperiment *experiment = workload->experiment;
-    const bool timed = times_builds(workload);
+    const bool timed = rt_workload_is_timed(workload);
     Builds *all = rt_arena_alloc(&arena, workload->count, sizeof(Builds));
     RT_TRY(rt_arena_check(&arena, "build times", error));
     size_t count = 0;

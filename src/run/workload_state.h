@@ -40,6 +40,11 @@ static inline const RtCandidate *rt_workload_setup(const RtWorkloadState *worklo
     return &e->candidates[rt_candidate_built(e, candidate)];
 }
 
+/* Whether it takes times itself. */
+static inline bool rt_workload_is_timed(const RtWorkloadState *workload) {
+    return !workload->count_only && !workload->options->timer;
+}
+
 /* Notifies the observer. */
 static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEventKind what, uint32_t candidate,
                                         RtRayKind kind, RtError *error) {
