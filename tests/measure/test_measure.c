@@ -429,8 +429,8 @@ static RtCell *cell_of(const RtResults *results, const char *label) {
 /* One voxel makes a grid hundreds of times slower than the other settings: no noise hides that. */
 RT_TEST(a_best_of_chooses_the_faster_setting_on_other_rays_and_times_only_that) {
     const RtWorkloadOptions options = {.threads = 1, .timing = 1};
-    OWNED_RESULTS results;
     OWNED_MEMORY RtExperiment *e = experiment_thinned("bvh", 7);
+    OWNED_RESULTS results;
     add_best(e, "grid:best", "grid:resolution=1x1x1|20x20x20");
     add_scene(e, "random:n=3000", 32);
     rt_experiment_set_baseline(e, "grid:best");
