@@ -21,7 +21,7 @@ do for [a = 1:n_accels] {
 }
 number(name) = sum [a = 1:n_accels] (word(accels, a) eq name ? a : 0)
 row_of(name) = number(name) ? row[number(name)] : NaN
-paint(best) = best ? 0xd55e00 : strcol("group") eq among || strcol("below") ne "" ? 0x56b4e9 : 0x9a9a9a
+paint(best) = best ? 0xd55e00 : strcol("group") eq among || strstrt(strcol("accel"), "+") ? 0x56b4e9 : 0x9a9a9a
 here(s) = strcol("scene") eq word(scenes, s)
 figure_of(s, column_name) = here(s) ? column(column_name) : NaN
 at(s) = here(s) ? row_of(strcol("accel")) : NaN

@@ -106,10 +106,6 @@ static void judge_crossover(const RtClaim *claim, Figure *figure) {
     figure->verdict = any ? worse(certain, possible) : RT_CLAIM_UNDECIDED;
 }
 
-static bool has_too_few_rays(const Figure *figure) {
-    return figure->rays < RT_CLAIM_RAYS;
-}
-
 static void judge_figure(const RtClaimCase *judge, Figure *figure) {
     const RtClaim *claim = judge->claim;
     figure->verdict = RT_CLAIM_HOLDS;
@@ -130,7 +126,7 @@ static void judge_figure(const RtClaimCase *judge, Figure *figure) {
         figure->verdict = isnan(figure->value.median) ? RT_CLAIM_UNDECIDED
                                                       : compare(claim, figure->value.low, figure->value.high);
     }
-    if (has_too_few_rays(figure)) figure->verdict = RT_CLAIM_UNDECIDED;
+    if (figure->rays < RT_CLAIM_RAYS) figure->verdict = RT_CLAIM_UNDECIDED;
 }
 
 /* ---- texts ---- */
@@ -298,7 +294,7 @@ static void put_figure(RtClaimResult *result, const RtExperiment *experiment, co
     if (claim->form == RT_CLAIM_EXPONENT || claim->form == RT_CLAIM_CORRELATION || claim->mean)
         PUT(result, " over %" PRIu32 " values", figure->count);
     put_place(result, experiment, claim, figure->points);
-    if (!claim->readout && has_too_few_rays(figure))
+    if (!claim->readout && figure->rays < RT_CLAIM_RAYS)
         PUT(result, ", but of %" PRIu64 " ray%s, and fewer than %d decide nothing", figure->rays,
             rt_plural(figure->rays), RT_CLAIM_RAYS);
 }
@@ -394,14 +390,10 @@ static const Figure *find_worst(const RtClaim *claim, const Figure *figures, uin
     return worst;
 }
 
-static bool is_crossover(const RtClaim *claim) {
-    return claim->form == RT_CLAIM_CROSSOVER;
-}
-
 /* For a sentence: one figure, or the smallest and the largest; of curves, where they surely cross once. */
 static void put_value(RtClaimResult *result, const RtClaim *claim, const Figure *figures, uint32_t count,
                       const Figure *least, const Figure *most) {
-    if (is_crossover(claim)) {
+    if (claim->form == RT_CLAIM_CROSSOVER) {
         const bool certain = count == 1 && figures->found == 1 && is_certain(figures->crossovers);
         if (certain)
             put_one_crossover(result, claim, figures, figures->crossovers);
@@ -434,7 +426,7 @@ static void put_readout(RtClaimResult *result, const RtExperiment *experiment, c
         if (isnan(most->value.median) || value > most->value.median) most = &figures[i];
     }
     put_value(result, claim, figures, count, least, most);
-    if (count <= MOST_LISTED || is_crossover(claim)) {
+    if (count <= MOST_LISTED || claim->form == RT_CLAIM_CROSSOVER) {
         for (uint32_t i = 0; i < count; i++) {
             PUT(result, "%s", i ? "; " : "");
             put_figure(result, experiment, claim, &figures[i]);
@@ -567,13 +559,13 @@ static void judge_parsed(const RtClaimCase *judge, RtClaimPoint *points, RtClaim
                                                     : "no measurements of all kinds of rays");
     } else {
         /* An exponent needs all values; a crossover those between its ends. */
-        const bool whole = claim->form == RT_CLAIM_EXPONENT || is_crossover(claim);
+        const bool whole = claim->form == RT_CLAIM_EXPONENT || claim->form == RT_CLAIM_CROSSOVER;
         judge_points(judge, points, whole ? count : drop_unknown(points, count), result);
     }
     result->measured = measured;
     result->whole = known == count && count > 0;
     if (known > 0 && known < count) {
-        if (!is_crossover(claim)) result->verdict = worse(result->verdict, RT_CLAIM_UNDECIDED);
+        if (claim->form != RT_CLAIM_CROSSOVER) result->verdict = worse(result->verdict, RT_CLAIM_UNDECIDED);
         PUT(result, "; %" PRIu32 " of %" PRIu32 " values are unknown", count - known, count);
     }
     const char *refusal = known < count || count == 0 ? rt_claim_refusal(results, claim) : NULL;

@@ -184,12 +184,6 @@ static void append_from_manifest(RtExperiment *experiment) {
     }
 }
 
-static uint32_t find_label(const RtExperiment *experiment, const char *label) {
-    uint32_t c = 0;
-    while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
-    return c;
-}
-
 void rt_experiment_set_baseline(RtExperiment *experiment, const char *label) {
     uint32_t c = 0, listed = experiment->candidate_count;
     append_from_manifest(experiment);
@@ -199,8 +193,9 @@ void rt_experiment_set_baseline(RtExperiment *experiment, const char *label) {
         experiment->baseline = c < listed ? c : 0;
         return;
     }
-    experiment->baseline = find_label(experiment, label);
-    if (experiment->baseline < experiment->candidate_count || !rt_best_is(label)) return;
+    while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
+    experiment->baseline = c;
+    if (c < experiment->candidate_count || !rt_best_is(label)) return;
     RtCandidate best = {.entry = UINT32_MAX, .ray_stride = 1};
     snprintf(best.label, sizeof best.label, "%s", label);
     memcpy(best.stem, best.label, sizeof best.stem);

@@ -34,18 +34,6 @@ static uint32_t without_of(const RtExperiment *experiment, uint32_t workload) {
     return rt_candidate_find(experiment, experiment->frame.without, workload);
 }
 
-/* The accelerator below an overlay, if it is measured too; else candidate_count. */
-static uint32_t below_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    const RtExperiment *experiment = results->experiment;
-    const char *plus = strchr(rt_build_at(results, workload, candidate)->spec, '+');
-    uint32_t c = plus ? 0 : experiment->candidate_count;
-    while (c < experiment->candidate_count && strcmp(rt_build_at(results, workload, c)->spec, plus + 1) != 0)
-        c++;
-    return c;
-}
-
-typedef double Measure(const RtResults *results, uint32_t workload, uint32_t candidate);
-
 static double tests_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
     return cost_of(results, workload, candidate, RT_FRAME_ALL).object_tests;
 }
@@ -54,33 +42,19 @@ static double seconds_of(const RtResults *results, uint32_t workload, uint32_t c
     return cost_of(results, workload, candidate, RT_FRAME_ALL).seconds.median;
 }
 
-static double build_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    const RtBuildResult *build = rt_build_at(results, workload, candidate);
-    return build->known ? build->seconds.median : (double)NAN;
-}
-
 static bool is_overlay(const RtExperiment *experiment, uint32_t candidate) {
     return strchr(experiment->candidates[candidate].spec, '+') != NULL;
-}
-
-static double factor_of(const RtResults *results, uint32_t workload, uint32_t candidate, Measure *of) {
-    const RtExperiment *experiment = results->experiment;
-    uint32_t below = below_of(results, workload, candidate);
-    if (below == experiment->candidate_count && is_overlay(experiment, candidate)) return (double)NAN;
-    if (below == experiment->candidate_count) below = without_of(experiment, workload);
-    return of(results, workload, below) / of(results, workload, candidate);
 }
 
 /* Of the compared accelerators the one that takes least time, or fewest object tests if nothing was timed;
  * candidate_count if there is none. The yardstick is left out. */
 static uint32_t winner_of(const RtResults *results, uint32_t workload) {
     const RtExperiment *experiment = results->experiment;
-    Measure *of = experiment->count_only ? tests_of : seconds_of;
     uint32_t best = experiment->candidate_count;
     double least = INFINITY;
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         const RtCandidate *candidate = &experiment->candidates[c];
-        const double own = of(results, workload, c);
+        const double own = (experiment->count_only ? tests_of : seconds_of)(results, workload, c);
         if (strcmp(candidate->group, experiment->frame.among) != 0 || is_overlay(experiment, c) ||
             candidate->tried || strcmp(candidate->spec, rt_accel_yardstick()) == 0 ||
             !rt_candidate_runs(experiment, c, workload) || !(own < least))
@@ -97,12 +71,6 @@ typedef RtFrameRow Row;
 
 static double faster(const Row *r, RtFramePart part) {
     return r->without[part].seconds.median / r->cost[part].seconds.median;
-}
-
-static const char *below_label(const Row *r) {
-    const uint32_t below = below_of(r->results, r->workload, r->candidate);
-    const RtExperiment *experiment = r->results->experiment;
-    return below < experiment->candidate_count ? rt_candidate_label(experiment, below) : NULL;
 }
 
 #define COLUMNS(X)                                                                                           \
@@ -122,19 +90,13 @@ static const char *below_label(const Row *r) {
     X(times_faster, "times_faster", real6, "", "how many times faster than without a structure",             \
       faster(r, RT_FRAME_ALL))                                                                               \
     X(build_ms, "build_ms", real6, "ms", "time to build the structure",                                      \
-      1e3 * build_of(r->results, r->workload, r->candidate))                                                 \
+      r->build->known ? 1e3 * r->build->seconds.median : (double)NAN)                                        \
     X(primary_faster, "primary_faster", real6, "", "times_faster of the primary rays alone",                 \
       faster(r, RT_FRAME_PRIMARY))                                                                           \
     X(shadow_faster, "shadow_faster", real6, "", "times_faster of the shadow rays alone",                    \
       faster(r, RT_FRAME_SHADOW))                                                                            \
     X(secondary_faster, "secondary_faster", real6, "",                                                       \
       "times_faster of reflection and transmission rays alone", faster(r, RT_FRAME_SECONDARY))               \
-    X(below, "below", text, "", "for an overlay: the accelerator below it, if that is measured too",         \
-      below_label(r))                                                                                        \
-    X(gain, "gain", real6, "", "times_faster; for an overlay, relative to the accelerator below it",         \
-      r->gain)                                                                                               \
-    X(tests_gain, "tests_gain", real6, "",                                                                   \
-      "times_fewer; for an overlay, relative to the accelerator below it", r->tests_gain)                    \
     X(winner, "winner", flag, "", "whether it is marked as the fastest of the compared group",               \
       rt_field_flag(r->candidate == r->winner))                                                              \
     X(eye_label, "  accelerator", text, "", "> marks the fastest of those compared", r->shown)               \
@@ -144,7 +106,7 @@ static const char *below_label(const Row *r) {
     X(eye_ms, "ms", figure, "ms", "time of the frame", 1e3 * r->cost[0].seconds.median)                      \
     X(eye_faster, "faster", figure, "", "times faster than without a structure", faster(r, RT_FRAME_ALL))    \
     X(eye_build, "build", interval, "ms", "time to build the structure, in ms, with its interval",           \
-      rt_build_ms(rt_build_at(r->results, r->workload, r->candidate)))                                       \
+      rt_build_ms(r->build))                                                                                 \
     X(primary, "primary", figure, "", "times faster for primary rays", faster(r, RT_FRAME_PRIMARY))          \
     X(shadow, "shadow", figure, "", "times faster for shadow rays", faster(r, RT_FRAME_SHADOW))              \
     X(secondary, "bounce", figure, "", "times faster for reflection and transmission rays",                  \
@@ -164,16 +126,15 @@ static const void *row_at(void *context, size_t i) {
     if (!r->one) r->workload = (uint32_t)(i / experiment->candidate_count);
     const RtCandidate *candidate = &experiment->candidates[r->candidate];
     const bool chosen = candidate->member_count && !isnan(seconds_of(r->results, r->workload, r->candidate));
+    r->build = rt_build_at(r->results, r->workload, r->candidate);
     if (candidate->tried || !rt_candidate_runs(experiment, r->candidate, r->workload) ||
-        !(chosen || rt_build_at(r->results, r->workload, r->candidate)->known))
+        !(chosen || r->build->known))
         return NULL;
     const uint32_t without = without_of(experiment, r->workload);
     for (int part = 0; part < RT_FRAME_PARTS; part++) {
         r->cost[part] = cost_of(r->results, r->workload, r->candidate, (RtFramePart)part);
         r->without[part] = cost_of(r->results, r->workload, without, (RtFramePart)part);
     }
-    r->gain = factor_of(r->results, r->workload, r->candidate, seconds_of);
-    r->tests_gain = factor_of(r->results, r->workload, r->candidate, tests_of);
     r->winner = winner_of(r->results, r->workload);
     strcpy(r->shown, r->candidate == r->winner ? "> " : "  ");
     rt_candidate_show(experiment, r->candidate, r->shown + 2);

@@ -122,45 +122,30 @@ static const RtAccelOps *inexact_ops(const RtResults *results, uint32_t t, uint3
     return build->known && !build->exact ? spec->layers[spec->layer_count - 1].ops : NULL;
 }
 
-/* Appends how many answers of rays of kind k differ from the reference's, the least and the most over all
- * settings of an accelerator; false if none was counted. */
-static bool append_differing(const RtResults *results, uint32_t t, uint32_t k, const RtAccelOps *ops,
-                             const char *before, char *text) {
-    const RtExperiment *experiment = results->experiment;
-    uint64_t least = UINT64_MAX, most = 0, rays = 0;
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        const RtCell *cell = rt_cell_at(results, t, c, experiment->kinds[k]);
-        if (inexact_ops(results, t, c) != ops || !cell->counted) continue;
-        if (cell->differ < least) least = cell->differ;
-        if (cell->differ > most) most = cell->differ;
-        rays = cell->tally.rays;
-    }
-    if (rays == 0) return false;
-    rt_append_text(text, RT_MAX_SENTENCE, "%s %" PRIu64, before, least);
-    if (most > least) rt_append_text(text, RT_MAX_SENTENCE, " to %" PRIu64, most);
-    rt_append_text(text, RT_MAX_SENTENCE, " of %" PRIu64 " %s", rays,
-                   rt_experiment_kind_name(experiment, experiment->kinds[k]));
-    return true;
-}
-
-/* A sentence for each accelerator with its own arithmetic, whatever the number of its settings. */
+/* A sentence for each accelerator with its own arithmetic: of all its settings and kinds of rays the most
+ * answers that differ. */
 static void print_differing(const RtResults *results, uint32_t t, FILE *out) {
     const RtExperiment *experiment = results->experiment;
-    char text[RT_MAX_SENTENCE];
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         const RtAccelOps *ops = inexact_ops(results, t, c);
-        bool told = !ops, any = false;
+        bool told = !ops;
+        uint64_t most = 0, rays = 0;
         for (uint32_t earlier = 0; earlier < c; earlier++) told |= inexact_ops(results, t, earlier) == ops;
-        if (told) continue;
+        for (RtCellCursor at = {0}; !told && rt_results_next(results, &at);) {
+            if (at.workload != t || inexact_ops(results, t, at.candidate) != ops || !at.cell->counted ||
+                at.cell->differ < most)
+                continue;
+            most = at.cell->differ;
+            rays = at.cell->tally.rays;
+        }
+        if (rays == 0) continue;
+        char text[RT_MAX_SENTENCE];
         snprintf(
             text, sizeof text,
             "%s uses its own arithmetic. Answers that differ from the reference, if only in the last bits "
-            "of t",
-            ops->name);
-        for (uint32_t k = 0; k < experiment->kind_count; k++)
-            any |= append_differing(results, t, k, ops, any ? "," : ":", text);
-        rt_append_text(text, sizeof text, " rays; `raytally verify --accel %s` judges them.", ops->name);
-        if (any) rt_print_wrapped(text, out);
+            "of t: at most %" PRIu64 " of %" PRIu64 " of a kind; `raytally verify --accel %s` judges them.",
+            ops->name, most, rays, ops->name);
+        rt_print_wrapped(text, out);
     }
 }
 
@@ -228,17 +213,9 @@ static void print_builds(const RtResults *results, uint32_t t, FILE *out) {
                    most == 1                ? ", without an interval."
                    : least < RT_FULL_ROUNDS ? "; intervals of fewer than 6 cover less than 95 %."
                                             : ", with 95 % intervals.");
+    if (results->experiment->kind_count > 1)
+        rt_append_text(text, sizeof text, " Break-evens are over all kinds of rays together.");
     rt_print_wrapped(text, out);
-}
-
-/* Over which rays a break-even is. */
-static void print_break_even(const RtResults *results, uint32_t t, FILE *out) {
-    const RtExperiment *experiment = results->experiment;
-    char part[RT_MAX_PART_TEXT], text[RT_MAX_SENTENCE];
-    if (experiment->candidate_count < 2) return;
-    rt_results_say_part(results, 1u << t, rt_experiment_kinds(experiment), part);
-    snprintf(text, sizeof text, "Break-evens are over all kinds of rays together: %s.", part);
-    if (experiment->kind_count > 1) rt_print_wrapped(text, out);
 }
 
 static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
@@ -252,7 +229,6 @@ static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     print_differing(results, t, out);
     print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
     if (timed) print_builds(results, t, out);
-    if (timed) print_break_even(results, t, out);
 }
 
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) {

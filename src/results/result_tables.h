@@ -136,10 +136,10 @@ typedef struct RtFrameRow {
     uint32_t candidate;
     char shown[2 + RT_MAX_SHOWN]; /* its mark and its label, for a screen */
     const char *group;            /* printed rows: that of the last heading */
+    const RtBuildResult *build;
     /* Totals over a part of the frame; its tests and times are NAN if a kind was not measured, or if the part
        has no rays. */
     RtCost cost[RT_FRAME_PARTS], without[RT_FRAME_PARTS];
-    double gain, tests_gain; /* in time, and in object tests */
     uint32_t winner; /* the fastest of the group, without overlays; of the fewest object tests if nothing was
                         timed; candidate_count: none */
 } RtFrameRow;

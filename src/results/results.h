@@ -123,8 +123,8 @@ double *rt_cell_round_times(const RtCell *cell, RtRoundTime which);
 uint32_t rt_results_candidate(const RtResults *results, uint32_t workload, uint32_t candidate,
                               RtRayKind kind);
 
-/* Whether the cell is timed when it is measured: that of a member that is only tried is where it is chosen.
- */
+/* Whether the cell is timed when it is measured: that of a member that is only tried is where it is chosen,
+ * or if the null run repeats it. */
 bool rt_results_times(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
 
 /* The candidate's label; for the null run the baseline's and " (again)". */
