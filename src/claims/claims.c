@@ -438,8 +438,8 @@ static void put_readout(RtClaimResult *result, const RtExperiment *experiment, c
     put_figure(result, experiment, claim, most);
 }
 
-/* "5 of 7, 1 undecided": in how many figures a claim holds. Those of `least` are one for each rival; then it
- * holds in a cell if it does for all of them. */
+/* "5 of 7, 1 undecided": in how many figures a claim holds. Those of `least` are one for each other
+ * accelerator; then it holds in a cell if it does for all of them. */
 static void put_count(RtClaimResult *result, const Figure *figures, uint32_t count) {
     uint32_t verdicts[RT_CLAIM_VERDICT_COUNT] = {0}, cells = 0;
     for (uint32_t i = 0, next; i < count; i = next) {

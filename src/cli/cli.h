@@ -220,8 +220,7 @@ bool rt_cli_leave_out(RtStatus status, const char **specs, uint32_t *count, uint
     }
 #define RT_THREADS_HELP                                                                                      \
     "Threads, 0 for all processors. Default: time builds and rays on one thread, rays by processor time, "   \
-    "and "                                                                                                   \
-    "count on all. Times on several threads are wall times"
+    "and count on all. Times on several threads are wall times"
 
 /* A vector as [x, y, z]. */
 json_t *rt_cli_vector_json(RtVec3 v);

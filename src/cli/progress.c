@@ -74,6 +74,7 @@ static void describe(RtProgress *progress, const RtResults *results, const RtEve
     static const char *const what[] = {[RT_EVENT_WORKLOAD] = "rays recorded",
                                        [RT_EVENT_BUILD] = "built",
                                        [RT_EVENT_COUNT] = "counted",
+                                       [RT_EVENT_CHOICE] = "chosen",
                                        [RT_EVENT_TIME] = "timed",
                                        [RT_EVENT_DISTRIBUTION] = "distributed",
                                        [RT_EVENT_RENDER] = "rendered",

@@ -289,8 +289,7 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
         y, n,
         "name section? paper? question prediction scenes accelerators baseline? rays? limit? coherent_run? "
         "rounds? builds? milliseconds? threads? seed? count_only? render? hardware? distributions? "
-        "published? frame? "
-        "quick? plots? expect? finding? not_shown? limits? format?"));
+        "published? frame? quick? plots? expect? finding? not_shown? limits? format?"));
     RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_WORD, experiment->name));
     RT_TRY(rt_yaml_copy(y, n, "section", RT_MAX_WORD, experiment->section));
     RT_TRY(rt_yaml_copy(y, n, "question", RT_MAX_TEXT, experiment->question));

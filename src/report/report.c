@@ -417,7 +417,7 @@ static json_t *data_of(const RtResults *results, const json_t *manifest, RtError
 }
 
 /* For an experiment with frames: their plot; page.js adds the tables. */
-static void put_answer(FILE *out, const RtResults *results, const char *directory) {
+static void put_frames(FILE *out, const RtResults *results, const char *directory) {
     const RtExperiment *experiment = results->experiment;
     char path[RT_MAX_PATH], text[RT_MAX_FRAME_TEXT];
     if (!*experiment->frame.without) return;
@@ -439,7 +439,7 @@ static RtStatus put_page(FILE *out, const RtResults *results, const json_t *mani
     RT_TRY(rt_finding_fill(results, directory, &finding, error));
     rt_page_begin(out, experiment->name, false);
     rt_html_wrap(out, "<p class=\"lede\">", experiment->question, "</p>\n");
-    put_answer(out, results, directory);
+    put_frames(out, results, directory);
     fputs("<div id=\"verdict\"></div>\n", out); /* before the prediction */
     rt_page_finding(out, &finding);
     rt_finding_clear(&finding);

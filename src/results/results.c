@@ -72,13 +72,13 @@ uint32_t rt_results_candidate(const RtResults *results, uint32_t workload, uint3
 
 bool rt_results_times(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
     const RtExperiment *e = results->experiment;
-    const uint32_t repeated = rt_candidate_built(e, e->candidate_count);
-    bool timed = candidate >= e->candidate_count || candidate == repeated || !e->candidates[candidate].tried;
+    if (candidate >= e->candidate_count || !e->candidates[candidate].tried) return true;
+    if (candidate == rt_candidate_built(e, e->candidate_count)) return true;
     for (uint32_t best = 0; best < e->candidate_count; best++) {
         const RtCell *cell = rt_cell_at(results, workload, best, kind);
-        timed |= cell->chosen && cell->choice == candidate;
+        if (cell->chosen && cell->choice == candidate) return true;
     }
-    return timed;
+    return false;
 }
 
 bool rt_cell_is_learnt(const RtCell *cell) {

@@ -13,8 +13,7 @@
 /* Whether a frame is rendered with candidate `c`: with the null run none is. */
 static bool renders(const RtWorkloadState *workload, uint32_t c) {
     const RtExperiment *e = workload->experiment;
-    if (!e->render || workload->count_only || workload->options->timer || c == e->candidate_count)
-        return false;
+    if (!e->render || !rt_workload_is_timed(workload) || c == e->candidate_count) return false;
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         if (*rt_cell_at(workload->results, workload->index, c, (RtRayKind)k)->left_out) return false;
     }
@@ -224,7 +223,7 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
                                          &workload->sets[kind], workload->reference, error);
     if (status == RT_OK && workload->options->timer) {
         status = workload->options->timer(workload->options->timer_context, workload, kind, error);
-    } else if (status == RT_OK && !workload->count_only) {
+    } else if (status == RT_OK && rt_workload_is_timed(workload)) {
         status = rt_workload_choose(workload, kind, error);
         if (status == RT_OK) status = rt_workload_time(workload, kind, error);
     }
@@ -344,7 +343,7 @@ static RtWorkloadState state_of(RtResults *results, uint32_t index, const RtWork
         .results = results, .experiment = results->experiment, .options = options, .index = index};
     workload.count_only = options->count_only || workload.experiment->count_only;
     workload.distributions = workload.experiment->distributions && !options->timer;
-    workload.count = workload.experiment->candidate_count + (!workload.count_only && !options->timer);
+    workload.count = workload.experiment->candidate_count + rt_workload_is_timed(&workload);
     return workload;
 }
 

@@ -64,6 +64,14 @@ PLACE_TEST(without_a_terminal_a_line_comes_as_often_as_it_may_and_no_more) {
     rt_free(text);
 }
 
+PLACE_TEST(whatever_was_finished_has_a_word) {
+    for (int what = RT_EVENT_WORKLOAD; what <= RT_EVENT_NO_CELL; what++) {
+        OWNED_MEMORY char *text = said(place, (RtEventKind)what, false, 0.2, 300);
+        assert_non_null(strstr(text, ": "));
+        assert_null(strstr(text, "(null)"));
+    }
+}
+
 PLACE_TEST(on_a_terminal_one_line_is_drawn_in_place_and_taken_away) {
     OWNED_MEMORY char *text = said(place, RT_EVENT_BUILD, true, 1, 100);
     const char *const away = "\r\033[K";

@@ -1,5 +1,5 @@
 'use strict';
-// What the data of a page adds to it. A report has `sections` (tables of each scene), `frames` (tables of the answer), `verdict` (its claims), `papers`, and
+// What the data of a page adds to it. A report has `sections` (tables of each scene), `frames` (tables of whole frames), `verdict` (its claims), `papers`, and
 // what describes the method: `manifest`, `colors` (by label), `counters`, `interval`, `null_runs`, `learnt`, `left_out`, `count_only`. An index has
 // `papers` and `verdicts` (the claims of each experiment). src/core/text/table.h says what a table is. Question, answer and plots are there without any of it.
 (() => {
