@@ -17,8 +17,7 @@
 
 #define RT_OCTREE_PARAMS(X)                                                                                  \
     X(RT_OCTREE_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("16", 1, 1e6, "2|1000000"),                           \
-      "a cell with at most this many objects is not divided",                                                \
-      "measured: within 8 % of the fastest on four scenes")                                                  \
+      "a cell with at most this many objects is not divided", "measured: within 8 % of the fastest")         \
     X(RT_OCTREE_MAX_DEPTH, "max_depth", RT_INT("-1", -1, RT_OCTREE_DEPTH_LIMIT, "0|4|6"),                    \
       "largest depth of a leaf, the root's being 0; -1: two levels deeper than a full tree with a leaf per " \
       "object",                                                                                              \

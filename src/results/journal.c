@@ -542,11 +542,10 @@ RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperim
 /* A new header, then all lines except those of `changed` plugins. */
 static json_t *lines_without(const json_t *lines, const RtExperiment *experiment, const RtSelection *only,
                              const json_t *changed) {
-    json_t *kept = json_array(), *line, *header = header_json(experiment, only);
+    json_t *line, *header = header_json(experiment, only), *kept = json_pack("[o]", header);
     size_t i;
     json_t *first = json_object_get(json_array_get(lines, 0), "claims");
     if (first) json_object_set(header, "claims", first); /* those with which the run began */
-    json_array_append_new(kept, header);
     json_array_foreach((json_t *)lines, i, line) {
         if (i > 0 && json_is_object(line) && !line_concerns(line, experiment, changed))
             json_array_append(kept, line);
