@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 
 #include "cli/jobs.h"
+#include "scenes/open.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -112,6 +113,19 @@ void rt_cli_set_path(struct argp_state *state, const char *option, const char **
                    extensions);
     if (*slot) argp_error(state, "%s: both '%s' and '%s': give one file", option, *slot, path);
     *slot = path;
+}
+
+void rt_cli_take_strict(void *options, const char *text, struct argp_state *state) {
+    (void)options, (void)text, (void)state;
+    rt_warnings_refuse();
+}
+
+RtStatus rt_cli_open_scene(const char *spec, RtScene *scene, RtError *error) {
+    char text[RT_WARNING_TEXT];
+    RT_TRY(rt_scene_open(spec, scene, error));
+    for (uint32_t i = 0; i < scene->warnings.count; i++)
+        fprintf(stderr, "raytally: warning: %s\n", rt_warning_text(&scene->warnings.list[i], text));
+    return RT_OK;
 }
 
 json_t *rt_cli_vector_json(RtVec3 v) {

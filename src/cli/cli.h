@@ -161,6 +161,9 @@ RT_COMMANDS(RT_COMMAND)
  * json_pack would only return NULL. */
 RtStatus rt_cli_check_json_name(const char *name, RtError *error);
 
+/* rt_scene_open; prints the warnings of its files to stderr. */
+RtStatus rt_cli_open_scene(const char *spec, RtScene *scene, RtError *error);
+
 /* Prints one JSON document to stdout, indented, and takes the reference. */
 void rt_cli_print_json(json_t *document);
 
@@ -175,6 +178,7 @@ bool rt_cli_digits(const char **text, uint32_t *number);
 
 /* For tables of options: limits the memory and the time of this process. */
 void rt_cli_take_memory(void *options, const char *text, struct argp_state *state);
+void rt_cli_take_strict(void *options, const char *text, struct argp_state *state);
 void rt_cli_take_time(void *options, const char *text, struct argp_state *state);
 
 /* ---- options of several commands ---- */
@@ -207,6 +211,11 @@ void rt_cli_take_time(void *options, const char *text, struct argp_state *state)
  * and removes it. */
 bool rt_cli_leave_out(RtStatus status, const char **specs, uint32_t *count, uint32_t i, const RtError *why);
 
+#define RT_STRICT_OPTION                                                                                     \
+    {                                                                                                        \
+        "strict", 0, NULL, RT_TO_TAKE(rt_cli_take_strict),                                                   \
+            "What is odd in the file of a scene is an error, not a warning"                                  \
+    }
 #define RT_LIMIT_OPTIONS                                                                                     \
     {"memory", 0, "BYTES", RT_TO_TAKE(rt_cli_take_memory),                                                   \
      "Memory limit for scenes, structures, rays and images, as in 512M or 4G (powers of 1000); a command "   \

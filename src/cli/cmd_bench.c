@@ -114,6 +114,7 @@ static const RtOption options[] = {
      "file each, FILE-SCENE-ACCELERATOR-KIND.npy, without what they have in common"},
     {"counts", 0, "FILE.npy", RT_TO_PATH(workload.counts, ".npy"),
      "Also write each ray's cost for NumPy, a row per ray and a field per counter; files as with --hits"},
+    RT_STRICT_OPTION,
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
     {"rays-from", 0, "FILE.npy", RT_TO_TAKE(take_rays_from),
      "Measure the rays of FILE instead of recorded ones: an array of float32 of shape (N, 8) as `raytally "

@@ -19,8 +19,10 @@ static void finish(void *options, struct argp_state *state) {
     if (!((Options *)options)->out) argp_error(state, "give a scene IN and a file OUT");
 }
 
-static const RtOption options[] = {
-    {"force", 'f', NULL, RT_TO_FLAG(force), "Replace OUT if it exists"}, RT_LIMIT_OPTIONS, {0}};
+static const RtOption options[] = {{"force", 'f', NULL, RT_TO_FLAG(force), "Replace OUT if it exists"},
+                                   RT_STRICT_OPTION,
+                                   RT_LIMIT_OPTIONS,
+                                   {0}};
 
 const RtSyntax rt_convert_syntax = {.options = options,
                                     .arguments = "IN OUT",
@@ -36,6 +38,6 @@ RtStatus rt_command_convert(int argc, char **argv, RtError *error) {
     Options o = {0};
     RT_OWNED(RtScene, scene, rt_scene_clear);
     rt_cli_parse(&rt_convert_syntax, argc, argv, &o);
-    RT_TRY(rt_scene_open(o.in, &scene, error));
+    RT_TRY(rt_cli_open_scene(o.in, &scene, error));
     return rt_scene_save(&scene, o.out, o.force, error);
 }

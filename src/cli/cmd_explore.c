@@ -30,6 +30,7 @@ static const RtOption options[] = {
     {"megabytes", 0, "N", RT_TO_INTEGER(megabytes, 1, 100),
      "Size limit for recorded rays, 1..100 (default 6). If the rays of all pixels need more, one pixel in "
      "2 x 2 is recorded, or in 3 x 3, and so on"},
+    RT_STRICT_OPTION,
     RT_LIMIT_OPTIONS,
     {0}};
 
@@ -61,7 +62,7 @@ static RtStatus run(Options *o, RtError *error) {
     uint32_t stride;
     RT_TRY(rt_explore_available(error));
     RT_TRY(rt_cli_check_json_name(o->scene, error));
-    RT_TRY(rt_scene_open(o->scene, &scene, error));
+    RT_TRY(rt_cli_open_scene(o->scene, &scene, error));
     RtStatus status = rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error);
     if (status == RT_OK) status = build(accels, specs, texts, o, &scene, error);
     if (status == RT_OK)

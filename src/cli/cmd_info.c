@@ -17,7 +17,9 @@ typedef struct Options {
 
 typedef struct Counts {
     uint32_t of_shape[RT_SHAPE_COUNT];
-    uint32_t zero_area; /* triangles */
+    uint32_t zero_area;  /* triangles */
+    double area, volume; /* of all triangles; the volume that they enclose if they are closed,
+                          * counter-clockwise from outside */
     char fingerprint[17];
 } Counts;
 
@@ -35,6 +37,7 @@ static const RtOption options[] = {
      "boxes, 3, 7 and 13 slabs; with =all every number of slabs"},
     {"rays", 'n', "N", RT_TO_INTEGER(rays, 1, 1000000000), "Random lines per shape for --extents (100000)"},
     {"seed", 's', "S", RT_TO_INTEGER(seed, 0, INT64_MAX), "Seed of these lines (1)"},
+    RT_STRICT_OPTION,
     RT_LIMIT_OPTIONS,
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"},
     {0}};
@@ -46,8 +49,15 @@ static Counts count(const RtScene *scene) {
                          RT_SHAPES(COUNT)
 #undef COUNT
                      }};
-    for (uint32_t i = 0; i < g->triangle_count; i++)
-        counts.zero_area += rt_lengthd(rt_triangle_normal(&g->triangles[i])) == 0;
+    const RtVec3d centre = rt_scaled(rt_addd(rt_widen(g->box.lo), rt_widen(g->box.hi)), 0.5);
+    for (uint32_t i = 0; i < g->triangle_count; i++) {
+        const RtTriangle *t = &g->triangles[i];
+        const RtVec3d corner = rt_widen(t->v[0]);
+        const RtVec3d area = rt_area_vector(corner, rt_widen(t->v[1]), rt_widen(t->v[2])); /* twice it */
+        counts.zero_area += rt_lengthd(rt_triangle_normal(t)) == 0;
+        counts.area += rt_lengthd(area) / 2;
+        counts.volume += rt_dotd(area, rt_subd(corner, centre)) / 6;
+    }
     snprintf(counts.fingerprint, sizeof counts.fingerprint, "%016" PRIx64, rt_scene_fingerprint(scene));
     return counts;
 }
@@ -77,6 +87,8 @@ static void print_info(const RtScene *scene, const Counts *counts) {
     if (g->vertex_normal_count)
         printf("  with vertex normals: %u triangle%s\n", g->vertex_normal_count,
                rt_plural(g->vertex_normal_count));
+    if (g->triangle_count)
+        printf("  area of triangles: %.6g; volume in them, if closed: %.6g\n", counts->area, counts->volume);
     if (counts->zero_area)
         printf("  without area, never hit: %u triangle%s\n", counts->zero_area, rt_plural(counts->zero_area));
     printf(g->object_count > 0 ? "bounds:\n" : "bounds: none\n");
@@ -127,18 +139,23 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
     json_t *bounds = g->object_count == 0 ? json_null()
                                           : json_pack("{s:o, s:o}", "lo", rt_cli_vector_json(g->box.lo), "hi",
                                                       rt_cli_vector_json(g->box.hi));
+    json_t *warnings = json_array();
+    for (uint32_t i = 0; i < scene->warnings.count; i++) {
+        char text[RT_WARNING_TEXT];
+        json_array_append_new(warnings, json_string(rt_warning_text(&scene->warnings.list[i], text)));
+    }
     return json_pack(
-        "{s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o,"
-        " s:{s:o, s:o, s:o, s:f, s:f, s:I, s:I}, s:I}",
+        "{s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:f, s:f, s:o, s:o, s:o, s:o, s:o,"
+        " s:{s:o, s:o, s:o, s:f, s:f, s:I, s:I}, s:I, s:o}",
         "scene", scene->name, "fingerprint", counts->fingerprint, "objects", (json_int_t)g->object_count,
         "shapes", shapes, "solids", (json_int_t)g->forest.set.solid_count, "triangles_with_normals",
-        (json_int_t)g->vertex_normal_count, "triangles_without_area", (json_int_t)counts->zero_area, "bounds",
-        bounds, "materials", materials, "lights", lights, "ambient", rt_cli_vector_json(scene->ambient),
-        "background", rt_cli_vector_json(scene->background), "camera", "from",
-        rt_cli_vector_json(camera->from), "at", rt_cli_vector_json(camera->at), "up",
+        (json_int_t)g->vertex_normal_count, "triangles_without_area", (json_int_t)counts->zero_area, "area",
+        counts->area, "volume", counts->volume, "bounds", bounds, "materials", materials, "lights", lights,
+        "ambient", rt_cli_vector_json(scene->ambient), "background", rt_cli_vector_json(scene->background),
+        "camera", "from", rt_cli_vector_json(camera->from), "at", rt_cli_vector_json(camera->at), "up",
         rt_cli_vector_json(camera->up), "fov", (double)camera->fov, "near", (double)camera->near, "width",
         (json_int_t)camera->width, "height", (json_int_t)camera->height, "bytes",
-        (json_int_t)rt_scene_bytes(scene));
+        (json_int_t)rt_scene_bytes(scene), "warnings", warnings);
 }
 
 /* ---- the command ---- */
@@ -156,7 +173,7 @@ RtStatus rt_command_info(int argc, char **argv, RtError *error) {
     RtExtentsTable table;
     rt_cli_parse(&rt_info_syntax, argc, argv, &o);
     if (o.json) RT_TRY(rt_cli_check_json_name(o.scene, error));
-    RT_TRY(rt_scene_open(o.scene, &scene, error));
+    RT_TRY(rt_cli_open_scene(o.scene, &scene, error));
     const Counts counts = count(&scene);
     if (o.extents) RT_TRY(rt_extents_table(&table, &scene, o.every_slabs, o.rays, o.seed, error));
     if (o.json) {

@@ -23,6 +23,7 @@ static void finish(void *options, struct argp_state *state) {
 static const RtOption options[] = {{"out", 'o', "FILE.npy", RT_TO_TEXT(out), "The file to write"},
                                    {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024),
                                     "Threads, 0 for all processors (0); the rays do not depend on them"},
+                                   RT_STRICT_OPTION,
                                    RT_LIMIT_OPTIONS,
                                    {0}};
 

@@ -162,6 +162,7 @@ static const RtOption options[] = {
     {"depth", 'd', "N", RT_TO_INTEGER(depth, 1, RT_MAX_DEPTH),
      "Levels of the ray tree, the primary ray being the first, 1..64 (default 5)"},
     {"threads", 't', "N", RT_TO_INTEGER(threads, 1, 1024), "Threads (default: all processors)"},
+    RT_STRICT_OPTION,
     RT_LIMIT_OPTIONS,
     {"output", 'o', "FILE.png", RT_TO_PATH(png, ".png"), "The image"},
     {"stats", 0, "FILE.json", RT_TO_PATH(stats, ".json"),
@@ -300,7 +301,7 @@ static RtStatus prepare(Run *run, RtError *error) {
     for (uint32_t i = o->accel_count; i-- > 0;) RT_TRY(rt_spec_parse(o->accels[i], &spec, error));
     if (o->structure) RT_TRY(rt_structure_available(&spec, o->layer, error));
     if (o->stats) RT_TRY(rt_cli_check_json_name(o->scene, error));
-    RT_TRY(rt_scene_open(o->scene, &run->scene, error));
+    RT_TRY(rt_cli_open_scene(o->scene, &run->scene, error));
     RT_TRY(rt_scene_sample(&run->scene, o->size[0], o->size[1], o->samples, o->corners, error));
     RtStatus status = build(run, 0, &run->accel, error);
     while (leave_out(run->options, status, 0, error)) status = build(run, 0, &run->accel, error);

@@ -78,7 +78,9 @@ static const RtOption options[] = {
     RT_UNTIL_OPTIONS(how.workload.until, how.workload.patience),
     {"quick", 0, NULL, RT_TO_FLAG(quick), "The smaller variant that the YAML describes under `quick`"},
     {"strict", 0, NULL, RT_TO_FLAG(strict),
-     "Exit code 1 if a claim of the experiment (`expect`, `finding`, `paper`) does not hold"},
+     "Exit code 1 if a claim of the experiment (`expect`, `finding`, `paper`) does not hold; what is odd in "
+     "the "
+     "file of a scene is an error"},
     {"dry-run", 0, NULL, RT_TO_FLAG(dry), "Measure nothing: list the cells, and which of them are finished"},
     {"only", 0, "SCENE[/ACCEL[/KIND]]", RT_TO_TAKE(take_only),
      "Measure only the baseline and one scene, one accelerator on it, or one kind of rays, given by labels; "
@@ -299,6 +301,7 @@ RtStatus rt_command_run(int argc, char **argv, RtError *error) {
     Options o = {.threads = -1,
                  .how = {.report = rt_run_report, .workload = {.timing = 1, .patience = RT_PATIENCE}}};
     rt_cli_parse(&rt_run_syntax, argc, argv, &o);
+    if (o.strict) rt_warnings_refuse();
     static RtExperiment experiment;
     return o.count == 1 ? run(&o, &experiment, error) : run_all(&o, &experiment, error);
 }

@@ -52,6 +52,7 @@ static const RtOption options[] = {
      "ray tree in a section that contains the primary ray"},
     {"rows", 0, "N", RT_TO_INTEGER(rows, 0, UINT32_MAX),
      "Print at most N rows, 0 for all (200); rows of hits are always printed"},
+    RT_STRICT_OPTION,
     RT_LIMIT_OPTIONS,
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout, with all rows"},
     {0}};
@@ -407,7 +408,7 @@ static RtStatus run(const Options *o, RtError *error) {
     RT_TRY(rt_spec_parse(o->accel, &spec, error));
     rt_spec_format(&spec, text);
     if (o->json) RT_TRY(rt_cli_check_json_name(o->scene, error));
-    RT_TRY(rt_scene_open(o->scene, &scene, error));
+    RT_TRY(rt_cli_open_scene(o->scene, &scene, error));
     RT_TRY(rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error));
     RT_TRY(rt_cli_check_pixel(&scene.sampling, o->pixel, error));
     RT_TRY(rt_accel_build(&spec, &scene, 0, &accel, error));

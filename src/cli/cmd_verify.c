@@ -89,6 +89,7 @@ static const RtOption options[] = {
     {"shrink", 0, "N", RT_TO_TAKE(take_shrink),
      "Reduce the scenes of the first N failures of each accelerator, or of `all`, which takes some seconds "
      "each (default 1, and at most 8 in total)"},
+    RT_STRICT_OPTION,
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"},
     {0}};
 
@@ -136,7 +137,7 @@ static RtStatus add_triangles(Options *o, RtError *error) {
     RT_TRY(add_default(o, error));
     for (uint32_t i = kept; i < o->work.scene_count; i++) {
         RtScene scene;
-        RT_TRY(rt_scene_open(o->scenes[i], &scene, error));
+        RT_TRY(rt_cli_open_scene(o->scenes[i], &scene, error));
         if (scene.geometry.triangle_count == scene.geometry.object_count) o->scenes[kept++] = o->scenes[i];
         rt_scene_clear(&scene);
     }

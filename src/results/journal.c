@@ -216,9 +216,9 @@ static const Member sets_members[] = {RT_RAY_KINDS(SET_MEMBER)};
 static const Record sets = RECORD(sets_members);
 
 static const Member workload_members[] = {
-    MEMBER(RtWorkloadResult, U32, "objects", objects), MEMBER(RtWorkloadResult, U32, "width", width),
-    MEMBER(RtWorkloadResult, U32, "height", height), MEMBER(RtWorkloadResult, HASH, "hash", scene),
-    MEMBER_OF("sets", &sets)};
+    MEMBER(RtWorkloadResult, U32, "objects", objects),    MEMBER(RtWorkloadResult, U32, "width", width),
+    MEMBER(RtWorkloadResult, U32, "height", height),      MEMBER(RtWorkloadResult, HASH, "hash", scene),
+    MEMBER(RtWorkloadResult, TEXT, "warnings", warnings), MEMBER_OF("sets", &sets)};
 
 #define COST_OF_BUILD(name, meaning) MEMBER(RtBuildResult, COUNT, #name, structure.build.name),
 static const Member build_tally_members[] = {RT_TALLY_COUNTERS(COST_OF_BUILD)};

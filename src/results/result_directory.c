@@ -19,13 +19,14 @@ static json_t *scenes_json(const RtResults *results) {
             json_object_set_new(sets, rt_ray_kind_name(experiment->kinds[k]),
                                 rt_ray_set_json(workload, experiment->kinds[k]));
         json_array_append_new(
-            list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:b, s:I, s:o}", "scene",
+            list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:b, s:I, s:o, s:s}", "scene",
                             experiment->workloads[t].label, "scene_spec", experiment->workloads[t].spec,
                             "skipped", workload->skipped, "objects", (json_int_t)workload->objects, "hash",
                             rt_json_hex(workload->scene), "width", (json_int_t)workload->width, "height",
                             (json_int_t)workload->height, "corners", experiment->workloads[t].corners,
                             "light_from_outside", experiment->workloads[t].light_from_outside, "depth",
-                            (json_int_t)experiment->workloads[t].depth, "rays", sets));
+                            (json_int_t)experiment->workloads[t].depth, "rays", sets, "warnings",
+                            workload->warnings));
     }
     return list;
 }

@@ -172,6 +172,18 @@ RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int 
     return record(experiment, index, threads, false, *reference, scene, sets, whole_rays, error);
 }
 
+/* Says the warnings of the scene's files, and lists them. */
+static void tell_warnings(const RtWorkloadState *workload, char *out, size_t size) {
+    const RtWarnings *warnings = &workload->scene->warnings;
+    char text[RT_WARNING_TEXT];
+    size_t length = 0;
+    for (uint32_t i = 0; i < warnings->count; i++) {
+        rt_notify(&workload->options->observer, "warning: %s", rt_warning_text(&warnings->list[i], text));
+        if (length < size)
+            length += (size_t)snprintf(out + length, size - length, "%s%s", i > 0 ? "\n" : "", text);
+    }
+}
+
 /* Records the rays; fills the workload's part of the results, or compares it with the previous run's. */
 static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
     uint64_t whole_rays[RT_RAY_KIND_COUNT] = {0};
@@ -196,6 +208,7 @@ static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
                        "'%s' has changed since this run was interrupted: start over with --force",
                        workload->experiment->workloads[workload->index].label);
     if (result->known) return RT_OK;
+    tell_warnings(workload, now.warnings, sizeof now.warnings);
     *result = now;
     return rt_workload_tell(workload, RT_EVENT_WORKLOAD, 0, RT_RAY_PRIMARY, error);
 }

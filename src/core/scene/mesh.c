@@ -11,7 +11,7 @@ typedef struct Format {
     RtStatus (*read)(RtMeshReader *r);
     void (*write)(const RtGeometry *geometry, FILE *file); /* of the first RT_MESH_WRITTEN */
     uint32_t most;                                         /* triangles that can be written */
-    bool text;
+    bool text;                                             /* never binary */
 } Format;
 
 static const Format formats[] = {
@@ -21,11 +21,25 @@ static const Format formats[] = {
     {"glb", rt_mesh_check_glb, rt_mesh_read_glb, rt_mesh_write_glb, UINT32_MAX / (3 * sizeof(RtTriangle)),
      false},
     {"gltf", NULL, rt_mesh_read_gltf, NULL, 0, true},
-    {"off", NULL, rt_mesh_read_off, NULL, 0, true},
+    {"off", rt_mesh_check_off, rt_mesh_read_off, NULL, 0, false},
 };
 
 const char *rt_mesh_extension(size_t i) {
     return i < sizeof formats / sizeof formats[0] ? formats[i].extension : NULL;
+}
+
+/* What is no mesh at all, but often has the name of one. */
+static RtStatus check_contents(RtMeshReader *r, const RtMeshHead *head, bool text) {
+    static const char *const pointers[] = {"version https://git-lfs", "/annex/objects/"};
+    const bool wide = memcmp(head->bytes, "\xFF\xFE", 2) == 0 || memcmp(head->bytes, "\xFE\xFF", 2) == 0;
+    for (size_t i = 0; i < 2; i++) {
+        if (memcmp(head->bytes, pointers[i], strlen(pointers[i])) == 0)
+            return rt_mesh_fail(r, "this is a pointer to the mesh, which was not fetched: `git %s` does",
+                                i == 0 ? "lfs pull" : "annex get");
+    }
+    if (wide) return rt_mesh_fail(r, "this is text in UTF-16: save it as UTF-8");
+    if (!text || head->size < RT_MESH_HEAD || !memchr(head->bytes, 0, RT_MESH_HEAD)) return RT_OK;
+    return rt_mesh_fail(r, "there is a byte of 0 at its beginning: it is a binary or damaged file, not text");
 }
 
 static RtStatus check_head(const Format *format, RtMeshReader *r) {
@@ -36,7 +50,8 @@ static RtStatus check_head(const Format *format, RtMeshReader *r) {
     const long size = fseek(file, 0, SEEK_END) == 0 ? ftell(file) : -1;
     fclose(file);
     head.size = size < 0 ? got : (uint64_t)size;
-    return format->check(r, &head);
+    RT_TRY(check_contents(r, &head, format->text));
+    return format->check ? format->check(r, &head) : RT_OK;
 }
 
 RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
@@ -50,8 +65,8 @@ RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, con
                       .scene = scene,
                       .material = material,
                       .transform = transform ? *transform : rt_transform_identity()};
-    if (format->check) RT_TRY(check_head(format, &r));
-    RT_TRY((format->text ? rt_file_read_text : rt_file_read)(path, RT_MESH_MAX_BYTES, &data, &size, error));
+    RT_TRY(check_head(format, &r));
+    RT_TRY(rt_file_read(path, RT_MESH_MAX_BYTES, &data, &size, error));
     rt_scan_begin(&r.text, data, size);
     const uint32_t before = scene->geometry.object_count;
     RtStatus status = format->read(&r);

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Triangle meshes: OBJ, PLY, STL, OFF and glTF 2.0.
+/* Triangle meshes: OBJ, PLY, STL, OFF and glTF 2.0, as other programs write them.
  *
  * Triangles come in the order of the file; of glTF, nodes depth first, then the primitives of a mesh.
- * Polygons are split into triangles; points and lines are skipped. Nothing is merged, removed or invented:
+ * Polygons are split into triangles; points and lines are left out. Nothing is merged, removed or invented:
  * triangles without area stay (they are never hit), and only the file's own vertex normals are used.
  * Materials, cameras and lights of the file are ignored.
  *
- * A damaged file is rejected with the place of the damage, in time and memory proportional to its size. (glTF
- * may place a mesh many times, but at most 1000 vertices and corners for each byte.) That is why the readers
- * are our own: Assimp 5 loads much of what is cut off or inconsistent, and crashes or hangs
+ * What is unused or redundant, or has one sensible reading, is read whatever it is like; what is left out or
+ * guessed, and changes the picture or may be damage, is a warning of the scene (core/base/warnings.h). A file
+ * whose geometry cannot be known is rejected with the place of the damage, in time and memory proportional to
+ * its size. (glTF may place a mesh many times, but at most 1000 vertices and corners for each byte.) That is
+ * why the readers are our own: Assimp 5 loads much of what is cut off or inconsistent, and crashes or hangs
  * on some files. A child process would end a crash, but its result would still need a check that reads every
  * number of the file again. */
 #ifndef RT_SCENE_MESH_H
@@ -67,19 +69,26 @@ typedef struct RtMeshReader {
     uint32_t material;
     RtTransform transform; /* of the vertices and normals */
     uint32_t vertex_count, vertex_capacity, normal_count, normal_capacity, corner_count, corner_capacity;
-    RtVec3 *vertices;       /* [vertex_count] */
-    RtVec3 *normals;        /* [normal_count] */
-    RtMeshCorner *corners;  /* [corner_count] of the polygon being read */
-    uint32_t face_count;    /* polygons added */
-    uint32_t texture_count; /* of OBJ, to check its indices */
+    RtVec3 *vertices;      /* [vertex_count] */
+    RtVec3 *normals;       /* [normal_count] */
+    RtMeshCorner *corners; /* [corner_count] of the polygon being read */
+    uint32_t face_count;   /* polygons added */
 } RtMeshReader;
+
+/* Begins with the whole file as text: without a byte-order mark, and without zeros and ^Z at its end, of
+ * which it warns. Rejects zeros elsewhere. */
+RtStatus rt_mesh_begin_text(RtMeshReader *r);
 
 /* Fails at the line of the last word; for binary formats, where there is none, at the file. */
 #define rt_mesh_fail(r, ...) rt_fail_at((r)->text.error, (r)->text.path, (r)->text.last, 0, __VA_ARGS__)
+/* Warns there; the literal is the kind (rt_warn_at). */
+#define rt_mesh_warn(r, ...)                                                                                 \
+    rt_warn_at(&(r)->scene->warnings, (r)->text.path, (r)->text.last, (r)->text.error, __VA_ARGS__)
 
 /* Rejects coordinates that are not finite. */
 RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3 vertex);
-/* Accepts any numbers: a normal that is not finite or has no length is ignored where it is used. */
+/* Accepts any numbers: a normal that is not finite, with a warning, or has no length is ignored where it is
+ * used. */
 RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal);
 
 /* Adds a corner; its indices must be valid. */
@@ -99,7 +108,7 @@ RtStatus rt_mesh_add_polygon(RtMeshReader *r);
 RtStatus rt_mesh_take(RtMeshReader *r, bool first, const char *wanted, RtWord *word);
 /* Takes a word if there is one more on the line. */
 bool rt_mesh_more(RtMeshReader *r, RtWord *word);
-/* Takes the word `text`, wherever it is. */
+/* Takes the word `text`, wherever it is, in upper or lower case. */
 RtStatus rt_mesh_expect(RtMeshReader *r, const char *text);
 
 /* The value of a word that must be a number. Integers have at most 18 digits. */
@@ -109,11 +118,18 @@ RtStatus rt_mesh_integer(const RtMeshReader *r, RtWord word, int64_t *out);
 /* Takes three numbers of a line, the first as rt_mesh_take. */
 RtStatus rt_mesh_take_vector(RtMeshReader *r, bool first, const char *wanted, RtVec3 *out);
 
+/* Takes the three words of a normal; one that is no finite number becomes NaN. */
+RtStatus rt_mesh_take_normal(RtMeshReader *r, RtVec3 *out);
+
 /* Fails: the file ends after `count` of the `declared` things that its header declares. */
 RtStatus rt_mesh_fail_short(const RtMeshReader *r, uint64_t count, uint64_t declared, const char *things);
 
-/* Rejects further words, and a last line without a line break: its last number may have been cut off. */
+/* Rejects further words; warns of a last line without a line break: its last number may have been cut off. */
 RtStatus rt_mesh_end(RtMeshReader *r);
+
+/* The same for a binary file: a few bytes more, less than a vertex, are a warning. */
+enum { RT_MESH_FEW_BYTES = 12 };
+RtStatus rt_mesh_end_binary(RtMeshReader *r);
 
 /* ---- the formats ---- */
 
@@ -128,6 +144,7 @@ typedef struct RtMeshHead {
 RtStatus rt_mesh_check_ply(RtMeshReader *r, const RtMeshHead *head);
 RtStatus rt_mesh_check_stl(RtMeshReader *r, const RtMeshHead *head);
 RtStatus rt_mesh_check_glb(RtMeshReader *r, const RtMeshHead *head);
+RtStatus rt_mesh_check_off(RtMeshReader *r, const RtMeshHead *head);
 
 /* Each reads the whole file of r->text, and adds its triangles to r->scene. */
 RtStatus rt_mesh_read_obj(RtMeshReader *r);

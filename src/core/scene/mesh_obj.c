@@ -1,106 +1,169 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Wavefront OBJ: vertices, vertex normals and polygons. Texture coordinates are counted only, to check their
- * indices. Statements about names, materials, points and lines are skipped. Others are rejected: they are
- * curved surfaces, or damage. The format has no end mark and no counts, so a file that was cut off behind a
- * line break cannot be told from a whole one. */
+ * indices. Statements about names, materials, points and lines are skipped; curves, surfaces and unknown
+ * words with a warning. Faces may stand before their vertices: the first that does has all later vertices
+ * read. The format has no end mark and no counts, so a file that was cut off behind a line break cannot be
+ * told from a whole one. */
 #include "core/scene/mesh.h"
 
 #include <inttypes.h>
 
-/* Takes what is left of the line, which must be numbers; *last is the last of them. */
-static RtStatus take_numbers(RtMeshReader *r, uint32_t *count, float *last) {
-    *count = 0;
-    for (RtWord word; rt_mesh_more(r, &word); ++*count) RT_TRY(rt_mesh_float(r, word, last));
-    return RT_OK;
+typedef enum List { VERTEX, TEXTURE, NORMAL, LISTS } List;
+
+typedef struct Obj {
+    RtMeshReader *mesh;
+    bool ahead;             /* all vertices and normals have been read */
+    uint32_t before[LISTS]; /* how many stand before the current line, from which negative indices count */
+    uint32_t textures;      /* in the file so far, or with `ahead` in all of it */
+} Obj;
+
+static uint32_t count_of(const Obj *obj, List list) {
+    return list == VERTEX    ? obj->mesh->vertex_count
+           : list == TEXTURE ? obj->textures
+                             : obj->mesh->normal_count;
 }
 
-/* A fourth number is a weight, which must be 1; more are a colour. */
+/* Takes what is left of the line; *count is the number of its words, *last the last of them. */
+static void take_rest(RtMeshReader *r, uint32_t *count, RtWord *last) {
+    *count = 0;
+    for (RtWord word; rt_mesh_more(r, &word); ++*count) *last = word;
+}
+
+/* A fourth number is a weight; more are a colour. */
 static RtStatus read_vertex(RtMeshReader *r) {
     RtVec3 vertex;
+    RtWord last;
     uint32_t more;
-    float last;
+    float weight;
     RT_TRY(rt_mesh_take_vector(r, false, "the x y z of a vertex", &vertex));
-    RT_TRY(take_numbers(r, &more, &last));
-    if (more == 1 && last != 1)
-        return rt_mesh_fail(r, "the vertex has a weight of %g: only 1 can be read", (double)last);
+    take_rest(r, &more, &last);
+    if (more == 1 && !(rt_scan_float(last, &weight) && weight == 1))
+        RT_TRY(rt_mesh_warn(r, "a vertex has a weight, which only curves use: it is ignored"));
     return rt_mesh_add_vertex(r, vertex);
 }
 
 static RtStatus read_normal(RtMeshReader *r) {
     RtVec3 normal;
+    RtWord last;
     uint32_t more;
-    float last;
-    RT_TRY(rt_mesh_take_vector(r, false, "the x y z of a normal", &normal));
-    RT_TRY(take_numbers(r, &more, &last));
-    if (more > 0) return rt_mesh_fail(r, "a normal has 3 numbers, this one has %u", 3 + more);
+    RT_TRY(rt_mesh_take_normal(r, &normal));
+    take_rest(r, &more, &last);
+    if (more > 0) RT_TRY(rt_mesh_warn(r, "a normal has more than 3 numbers: the others are ignored"));
     return rt_mesh_add_normal(r, normal);
 }
 
-static RtStatus read_texture(RtMeshReader *r) {
-    uint32_t count;
-    float last;
-    r->texture_count++;
-    return take_numbers(r, &count, &last);
+static RtStatus read_listed(Obj *obj, List list) {
+    obj->before[list]++;
+    if (obj->ahead || list == TEXTURE) {
+        obj->textures += !obj->ahead;
+        rt_scan_skip_line(&obj->mesh->text);
+        return RT_OK;
+    }
+    return list == VERTEX ? read_vertex(obj->mesh) : read_normal(obj->mesh);
 }
 
-/* Positive indices count from 1, negative ones from the latest, which is -1. */
-static RtStatus resolve(const RtMeshReader *r, RtWord part, const char *what, uint32_t count, uint32_t *out) {
-    int64_t index = 0;
-    RT_TRY(rt_mesh_integer(r, part, &index));
-    const int64_t from_start = index < 0 ? count + index : index - 1;
-    if (from_start < 0 || from_start >= count)
-        return rt_mesh_fail(r, "the face names %s %" PRId64 ", but there are %u so far", what, index, count);
-    *out = (uint32_t)from_start;
+/* Reads the vertices and normals of the rest of the file, for a face that stands before them. */
+static RtStatus read_ahead(Obj *obj) {
+    const RtScanner here = obj->mesh->text;
+    Obj later = {.mesh = obj->mesh, .textures = obj->textures};
+    for (RtWord word = rt_scan_peek(&obj->mesh->text); word.length > 0;
+         word = rt_scan_peek(&obj->mesh->text)) {
+        const bool first = word.first;
+        rt_scan_take(&obj->mesh->text, word);
+        if (first && rt_scan_is(word, "v"))
+            RT_TRY(read_listed(&later, VERTEX));
+        else if (first && rt_scan_is(word, "vn"))
+            RT_TRY(read_listed(&later, NORMAL));
+        else if (first && rt_scan_is(word, "vt"))
+            RT_TRY(read_listed(&later, TEXTURE));
+        else
+            rt_scan_skip_line(&obj->mesh->text);
+    }
+    obj->textures = later.textures;
+    obj->ahead = true;
+    obj->mesh->text = here;
     return RT_OK;
 }
 
-/* "v", "v/vt", "v//vn" or "v/vt/vn". */
-static RtStatus read_corner(RtMeshReader *r, RtWord word) {
-    const uint32_t counts[3] = {r->vertex_count, r->texture_count, r->normal_count};
-    static const char *const names[3] = {"vertex", "texture coordinate", "normal"};
-    uint32_t index[3] = {0, 0, RT_NO_NORMAL};
+/* Positive indices count from 1, negative ones from the latest, which is -1. Textures and normals may be
+ * missing. */
+static RtStatus resolve(Obj *obj, RtWord part, List list, uint32_t *out) {
+    static const char *const names[LISTS] = {"vertex", "texture coordinate", "normal"};
+    RtMeshReader *r = obj->mesh;
+    int64_t index = 0;
+    RT_TRY(rt_mesh_integer(r, part, &index));
+    const int64_t from_start = index < 0 ? obj->before[list] + index : index - 1;
+    if (from_start >= count_of(obj, list) && !obj->ahead) RT_TRY(read_ahead(obj));
+    if (from_start >= 0 && from_start < count_of(obj, list)) {
+        *out = (uint32_t)from_start;
+        return RT_OK;
+    }
+    if (list == VERTEX)
+        return rt_mesh_fail(r, "the face names %s %" PRId64 ", but there are %u", names[list], index,
+                            count_of(obj, list));
+    *out = RT_NO_NORMAL;
+    return rt_mesh_warn(r,
+                        "a face names a normal or texture coordinate that does not exist (%s %" PRId64
+                        "): it goes without",
+                        names[list], index);
+}
+
+/* "v", "v/vt", "v//vn" or "v/vt/vn"; a slash more at the end is nothing. */
+static RtStatus read_corner(Obj *obj, RtWord word) {
+    uint32_t index[LISTS] = {0, 0, RT_NO_NORMAL};
     const char *at = word.text, *end = at + word.length;
-    for (int field = 0; field < 3; field++) {
+    for (List list = VERTEX; list < LISTS; list++) {
         RtWord part = {.text = at, .line = word.line};
         while (at < end && *at != '/') at++;
         part.length = (size_t)(at - part.text);
         if (part.length > 0)
-            RT_TRY(resolve(r, part, names[field], counts[field], &index[field]));
-        else if (field != 1 || at == end)
+            RT_TRY(resolve(obj, part, list, &index[list]));
+        else if (list == VERTEX)
             break;
-        if (at == end) return rt_mesh_add_corner(r, (RtMeshCorner){index[0], index[2]});
+        if (at == end) return rt_mesh_add_corner(obj->mesh, (RtMeshCorner){index[VERTEX], index[NORMAL]});
         at++;
     }
-    return rt_scan_fail(&r->text, word, "v, v/vt, v//vn or v/vt/vn");
+    return rt_scan_fail(&obj->mesh->text, word, "v, v/vt, v//vn or v/vt/vn");
 }
 
-static RtStatus read_face(RtMeshReader *r) {
-    for (RtWord word; rt_mesh_more(r, &word);) RT_TRY(read_corner(r, word));
-    return rt_mesh_add_polygon(r);
+static RtStatus read_face(Obj *obj) {
+    for (RtWord word; rt_mesh_more(obj->mesh, &word);) RT_TRY(read_corner(obj, word));
+    return rt_mesh_add_polygon(obj->mesh);
 }
 
-static RtStatus read_statement(RtMeshReader *r, RtWord word) {
-    static const char *const skipped[] = {"o",        "g",        "s",  "mg",         "usemtl",   "mtllib",
-                                          "usemap",   "maplib",   "p",  "l",          "bevel",    "lod",
-                                          "c_interp", "d_interp", "vp", "shadow_obj", "trace_obj"};
-    if (rt_scan_is(word, "v")) return read_vertex(r);
-    if (rt_scan_is(word, "vn")) return read_normal(r);
-    if (rt_scan_is(word, "vt")) return read_texture(r);
-    if (rt_scan_is(word, "f")) return read_face(r);
-    for (size_t i = 0; i < sizeof skipped / sizeof skipped[0]; i++) {
-        if (!rt_scan_is(word, skipped[i])) continue;
-        rt_scan_skip_line(&r->text);
-        return RT_OK;
-    }
-    return rt_scan_fail(&r->text, word, "a statement of a polygon mesh (v vn vt f g o s usemtl ...)");
+static bool is_among(RtWord word, const char *const *names) {
+    while (*names && !rt_scan_is(word, *names)) names++;
+    return *names != NULL;
+}
+
+static RtStatus read_statement(Obj *obj, RtWord word) {
+    static const char *const unused[] = {"o",      "g",   "s",     "mg",       "usemtl",   "mtllib", "usemap",
+                                         "maplib", "lod", "bevel", "c_interp", "d_interp", "vp",     NULL};
+    static const char *const other[] = {"p",     "l",    "cstype", "deg",   "bmat",       "step",      "curv",
+                                        "curv2", "surf", "parm",   "trim",  "hole",       "scrv",      "sp",
+                                        "end",   "con",  "ctech",  "stech", "shadow_obj", "trace_obj", NULL};
+    if (rt_scan_is(word, "v")) return read_listed(obj, VERTEX);
+    if (rt_scan_is(word, "vn")) return read_listed(obj, NORMAL);
+    if (rt_scan_is(word, "vt")) return read_listed(obj, TEXTURE);
+    if (rt_scan_is(word, "f") || rt_scan_is(word, "fo")) return read_face(obj);
+    if (is_among(word, other))
+        RT_TRY(rt_mesh_warn(obj->mesh, "points, lines, curves and shadow objects are left out (%.*s)",
+                            (int)word.length, word.text));
+    else if (!is_among(word, unused))
+        RT_TRY(rt_mesh_warn(obj->mesh, "a statement that is not OBJ's is left out: '%.*s'",
+                            (int)(word.length < 40 ? word.length : 40), word.text));
+    rt_scan_skip_line(&obj->mesh->text);
+    return RT_OK;
 }
 
 RtStatus rt_mesh_read_obj(RtMeshReader *r) {
+    Obj obj = {.mesh = r};
     r->text.joins = true;
+    RT_TRY(rt_mesh_begin_text(r));
     for (;;) {
         const RtWord word = rt_scan_peek(&r->text);
         if (word.length == 0) return rt_mesh_end(r);
         rt_scan_take(&r->text, word); /* the first of its line, because statements take whole lines */
-        RT_TRY(read_statement(r, word));
+        RT_TRY(read_statement(&obj, word));
     }
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* PLY (Greg Turk): a header that declares elements and their properties, then the elements as text or binary.
- * Read are x y z and nx ny nz of the element `vertex`, and the list vertex_indices of `face`; everything else
- * is skipped, but must be there. A line of text holds one element. */
+ * Read are x y z and nx ny nz of the element `vertex`, the list vertex_indices of `face`, and that of
+ * `tristrips`, in which -1 ends a strip; everything else is skipped, but must be there. Faces that stand
+ * before the vertices are read after them. A line of text holds one element. */
 #include "core/scene/mesh.h"
 
 #include <string.h>
@@ -25,7 +26,9 @@ typedef struct Property {
     Use use;
 } Property;
 
-typedef enum Kind { VERTEX, FACE, UNKNOWN } Kind;
+typedef enum Kind { VERTEX, FACE, STRIPS, UNKNOWN, KINDS = UNKNOWN } Kind;
+
+static const char *const kind_names[KINDS] = {"vertex", "face", "tristrips"};
 
 typedef struct Element {
     Kind kind;
@@ -38,6 +41,7 @@ typedef struct Ply {
     RtMeshReader *mesh;
     bool binary, big_endian;
     bool starts; /* the next number begins a line of text */
+    bool skips;  /* lists of vertices: they stand before the vertices, and are read later */
     uint32_t element_count, property_count;
     Element elements[MOST_ELEMENTS];
     Property properties[MOST_PROPERTIES];
@@ -80,12 +84,9 @@ static RtStatus read_element(Ply *ply) {
     if (count < 0) return rt_scan_fail(&ply->mesh->text, word, "a count of at least 0");
     if (ply->element_count == MOST_ELEMENTS)
         return rt_mesh_fail(ply->mesh, "more than %d kinds of elements", MOST_ELEMENTS);
-    ply->elements[ply->element_count++] = (Element){.kind = rt_scan_is(name, "vertex") ? VERTEX
-                                                            : rt_scan_is(name, "face") ? FACE
-                                                                                       : UNKNOWN,
-                                                    .count = (uint64_t)count,
-                                                    .first = ply->property_count,
-                                                    .end = ply->property_count};
+    Element *element = &ply->elements[ply->element_count++];
+    *element = (Element){.count = (uint64_t)count, .first = ply->property_count, .end = ply->property_count};
+    while (element->kind < KINDS && !rt_scan_is(name, kind_names[element->kind])) element->kind++;
     return RT_OK;
 }
 
@@ -100,7 +101,7 @@ static RtStatus read_type(Ply *ply, RtWord word, Type *type) {
 static Use use_of(const Element *element, const Property *property, RtWord name) {
     static const char *const coordinates[COORDINATES] = {"x", "y", "z", "nx", "ny", "nz"};
     const bool list = property->count_type != TYPES;
-    if (element->kind == FACE && list &&
+    if ((element->kind == FACE || element->kind == STRIPS) && list &&
         (rt_scan_is(name, "vertex_indices") || rt_scan_is(name, "vertex_index")))
         return INDICES;
     for (Use use = X; use < COORDINATES && element->kind == VERTEX && !list; use++) {
@@ -145,25 +146,21 @@ static RtStatus read_header_line(Ply *ply, RtWord word) {
     return RT_OK;
 }
 
-/* A vertex has coordinates, a face has a list of vertices, and the vertices come first. */
+/* There are vertices, once, with coordinates; faces and strips have a list of vertices. */
 static RtStatus check_elements(const Ply *ply) {
-    bool vertices = false;
+    uint32_t vertices = 0;
     for (uint32_t i = 0; i < ply->element_count; i++) {
         const Element *element = &ply->elements[i];
-        const uint32_t needed = element->kind == VERTEX ? 1U << X | 1U << Y | 1U << Z
-                                : element->kind == FACE ? 1U << INDICES
-                                                        : 0;
-        if ((element->uses & needed) != needed)
-            return rt_mesh_fail(ply->mesh, element->kind == VERTEX
-                                               ? "the element 'vertex' lacks a property x, y or z"
-                                               : "the element 'face' lacks a list vertex_indices");
-        if (element->kind == VERTEX && vertices)
-            return rt_mesh_fail(ply->mesh, "there are two elements 'vertex'");
-        vertices = vertices || element->kind == VERTEX;
-        if (element->kind == FACE && !vertices)
-            return rt_mesh_fail(ply->mesh, "the element 'vertex' must come before 'face'");
+        const uint32_t needed = element->kind == VERTEX   ? 1U << X | 1U << Y | 1U << Z
+                                : element->kind < UNKNOWN ? 1U << INDICES
+                                                          : 0;
+        vertices += element->kind == VERTEX;
+        if (element->count > 0 && (element->uses & needed) != needed)
+            return rt_mesh_fail(ply->mesh, "the element '%s' lacks %s", kind_names[element->kind],
+                                element->kind == VERTEX ? "a property x, y or z" : "a list vertex_indices");
     }
-    return RT_OK;
+    return vertices == 1 ? RT_OK
+                         : rt_mesh_fail(ply->mesh, "there must be one element 'vertex', not %u", vertices);
 }
 
 static RtStatus read_header(Ply *ply) {
@@ -217,37 +214,67 @@ static RtStatus take_binary(Ply *ply, Type type, double *out) {
     return RT_OK;
 }
 
-static RtStatus take_text(Ply *ply, Type type, double *out) {
+/* Integers may be written as 255.0. What is neither a coordinate nor an index need not be a number. */
+static RtStatus take_text(Ply *ply, Type type, Use use, double *out) {
     RtWord word;
+    float value = NAN;
     RT_TRY(rt_mesh_take(ply->mesh, ply->starts, "a number", &word));
     ply->starts = false;
-    if (type == FLOAT32 || type == FLOAT64) {
-        float value = 0;
+    if (use != INDICES && use > Z) {
+        if (!rt_scan_float(word, &value))
+            RT_TRY(rt_mesh_warn(ply->mesh, "a property that is not used, or a normal, is no finite number"));
+    } else if (use != INDICES || type == FLOAT32 || type == FLOAT64 || memchr(word.text, '.', word.length)) {
         RT_TRY(rt_mesh_float(ply->mesh, word, &value));
-        *out = (double)value;
     } else {
-        int64_t value = 0;
-        RT_TRY(rt_mesh_integer(ply->mesh, word, &value));
-        *out = (double)value;
+        int64_t integer = 0;
+        RT_TRY(rt_mesh_integer(ply->mesh, word, &integer));
+        *out = (double)integer;
+        return RT_OK;
     }
+    *out = (double)value;
     return RT_OK;
 }
 
-static RtStatus take_number(Ply *ply, Type type, double *out) {
-    return ply->binary ? take_binary(ply, type, out) : take_text(ply, type, out);
+static RtStatus take_number(Ply *ply, Type type, Use use, double *out) {
+    return ply->binary ? take_binary(ply, type, out) : take_text(ply, type, use, out);
 }
 
-static RtStatus take_list(Ply *ply, const Property *property) {
+/* Adds the triangle of the last three corners of a strip; every other one is reversed. *length is that of the
+ * strip, which -1 ends. */
+static RtStatus add_to_strip(RtMeshReader *mesh, double index, RtMeshCorner strip[2], uint32_t *length) {
+    if (index < 0) {
+        *length = 0;
+        return RT_OK;
+    }
+    RT_TRY(rt_mesh_add_index(mesh, index));
+    const RtMeshCorner corner = mesh->corners[--mesh->corner_count];
+    for (uint32_t i = 0; *length >= 2 && i < 2; i++) RT_TRY(rt_mesh_add_corner(mesh, strip[i ^ *length % 2]));
+    RtStatus status = RT_OK;
+    if (*length >= 2) status = rt_mesh_add_corner(mesh, corner);
+    if (*length >= 2 && status == RT_OK) status = rt_mesh_add_polygon(mesh);
+    strip[0] = strip[1];
+    strip[1] = corner;
+    ++*length;
+    return status;
+}
+
+static RtStatus take_list(Ply *ply, const Property *property, Kind kind) {
     RtMeshReader *mesh = ply->mesh;
+    RtMeshCorner strip[2] = {{0, 0}, {0, 0}};
+    uint32_t length = 0;
     double count = 0, value = 0;
-    RT_TRY(take_number(ply, property->count_type, &count));
+    const bool adds = property->use == INDICES && !ply->skips;
+    RT_TRY(take_number(ply, property->count_type, INDICES, &count));
     if (!(count >= 0 && count <= (double)UINT32_MAX && count == floor(count)))
         return rt_mesh_fail(mesh, "a list has %.15g numbers", count);
     for (uint32_t left = (uint32_t)count; left > 0; left--) {
-        RT_TRY(take_number(ply, property->type, &value));
-        if (property->use == INDICES) RT_TRY(rt_mesh_add_index(mesh, value));
+        RT_TRY(take_number(ply, property->type, property->use, &value));
+        if (adds && kind == STRIPS)
+            RT_TRY(add_to_strip(mesh, value, strip, &length));
+        else if (adds)
+            RT_TRY(rt_mesh_add_index(mesh, value));
     }
-    return property->use == INDICES ? rt_mesh_add_polygon(mesh) : RT_OK;
+    return adds && kind == FACE ? rt_mesh_add_polygon(mesh) : RT_OK;
 }
 
 static RtStatus take_element(Ply *ply, const Element *element) {
@@ -256,9 +283,10 @@ static RtStatus take_element(Ply *ply, const Element *element) {
     for (uint32_t p = element->first; p < element->end; p++) {
         const Property *property = &ply->properties[p];
         if (property->count_type != TYPES)
-            RT_TRY(take_list(ply, property));
+            RT_TRY(take_list(ply, property, element->kind));
         else
-            RT_TRY(take_number(ply, property->type, property->use == OTHER ? &other : &at[property->use]));
+            RT_TRY(take_number(ply, property->type, property->use,
+                               property->use == OTHER ? &other : &at[property->use]));
     }
     if (element->kind != VERTEX) return RT_OK;
     const uint32_t normal = 1U << NX | 1U << NY | 1U << NZ;
@@ -268,7 +296,7 @@ static RtStatus take_element(Ply *ply, const Element *element) {
 }
 
 static RtStatus read_elements(Ply *ply, const Element *element) {
-    static const char *const names[] = {"vertices", "faces", "elements"};
+    static const char *const names[] = {"vertices", "faces", "strips", "elements"};
     if (element->first == element->end) return RT_OK; /* they take no space */
     for (uint64_t i = 0; i < element->count; i++) {
         RtScanner *text = &ply->mesh->text;
@@ -279,12 +307,34 @@ static RtStatus read_elements(Ply *ply, const Element *element) {
     return RT_OK;
 }
 
+/* Reads all elements in order, and then those that named vertices before there were any. */
+static RtStatus read_all(Ply *ply) {
+    RtScanner *text = &ply->mesh->text, starts[MOST_ELEMENTS];
+    uint32_t vertices = 0;
+    while (ply->elements[vertices].kind != VERTEX) vertices++;
+    for (uint32_t i = 0; i < ply->element_count; i++) {
+        starts[i] = *text;
+        ply->skips = i < vertices;
+        RT_TRY(read_elements(ply, &ply->elements[i]));
+    }
+    ply->skips = false;
+    const RtScanner end = *text;
+    for (uint32_t i = 0; i < vertices; i++) {
+        if (ply->elements[i].kind == UNKNOWN) continue;
+        *text = starts[i];
+        RT_TRY(read_elements(ply, &ply->elements[i]));
+    }
+    *text = end;
+    return RT_OK;
+}
+
 RtStatus rt_mesh_read_ply(RtMeshReader *r) {
     Ply ply = {.mesh = r};
     RT_TRY(read_header(&ply));
-    if (ply.binary) r->text.last = 0; /* no lines from here on */
-    for (uint32_t i = 0; i < ply.element_count; i++) RT_TRY(read_elements(&ply, &ply.elements[i]));
-    if (!ply.binary) return rt_mesh_end(r);
-    if (r->text.at == r->text.end) return RT_OK;
-    return rt_mesh_fail(r, "the file has %td bytes more than its header declares", r->text.end - r->text.at);
+    if (ply.binary)
+        r->text.last = 0; /* no lines from here on */
+    else
+        RT_TRY(rt_mesh_begin_text(r));
+    RT_TRY(read_all(&ply));
+    return ply.binary ? rt_mesh_end_binary(r) : rt_mesh_end(r);
 }

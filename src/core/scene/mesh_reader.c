@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Polygons are split into a fan around their first corner if it sees all others, else by cutting off ears
- * (Meisters 1975): corners whose triangle is inside the polygon. */
+ * (Meisters 1975): corners whose triangle is inside the polygon. What is left of a polygon that crosses
+ * itself becomes a fan, with a warning. */
 #include "core/scene/mesh.h"
 
 #include "core/base/memory.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -25,6 +27,7 @@ RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3 vertex) {
 }
 
 RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal) {
+    if (!rt_finite(normal)) RT_TRY(rt_mesh_warn(r, "a normal is not finite: its triangles go without"));
     return rt_append(&r->normals, &r->normal_count, &r->normal_capacity, &normal, sizeof normal,
                      r->text.error);
 }
@@ -92,79 +95,234 @@ static bool first_sees_all(const RtMeshReader *r, RtVec3d whole) {
     return true;
 }
 
-/* Whether corner `i` lies in the triangle or on its edge. Keyhole polygons visit a point twice, so the points
- * of the triangle itself do not count. */
-static bool is_inside(const RtMeshReader *r, RtVec3d whole, const uint32_t triangle[3], uint32_t i) {
-    const RtVec3 v = r->vertices[r->corners[i].vertex];
-    for (int k = 0; k < 3; k++) {
-        const RtVec3 at = r->vertices[r->corners[triangle[k]].vertex];
-        if (v.x == at.x && v.y == at.y && v.z == at.z) return false;
-        if (rt_dotd(whole, twice_area(r, triangle[k], triangle[(k + 1) % 3], i)) < 0) return false;
-    }
-    return true;
+/* ---- concave polygons ----
+ *
+ * Ears are looked for in the projection along the largest axis of the polygon's area, whose coordinates are
+ * exact. Only a corner that is not convex can lie in an ear; those are in a grid, so that an ear is compared
+ * with the few near it. A corner waits in a queue while its neighbours have changed since it was tried. */
+
+enum { NONE = UINT32_MAX };
+
+typedef struct Corner {
+    double x, y;
+    uint32_t before, after; /* the polygon that is left, a ring */
+    uint32_t next;          /* in the same voxel; NONE */
+    bool waits;
+} Corner;
+
+typedef struct Cutter {
+    Corner *corners;  /* [count] */
+    uint32_t *voxels; /* [side * side] the first corner of each */
+    uint32_t *queue;  /* [count], a ring */
+    uint32_t count, left, side, first, waiting;
+    double low[2], scale[2]; /* of the grid */
+    double area;             /* twice that of the whole */
+    uint64_t compared, most;
+} Cutter;
+
+static double turn(const Corner *a, const Corner *b, const Corner *c) {
+    return (b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x);
 }
 
-/* Whether corner `i` and its neighbours are an ear; or, with `flat`, a triangle of either orientation that is
- * a millionth of the polygon at most. */
-static bool is_ear(const RtMeshReader *r, RtVec3d whole, uint32_t i, bool flat) {
-    const uint32_t n = r->corner_count, ear[3] = {(i + n - 1) % n, i, (i + 1) % n};
-    const double area = rt_dotd(whole, twice_area(r, ear[0], ear[1], ear[2]));
-    if (flat) return fabs(area) <= 1e-6 * rt_dotd(whole, whole);
-    if (area <= 0) return false;
-    for (uint32_t other = 0; other < n; other++) {
-        if (other != ear[0] && other != ear[1] && other != ear[2] && is_inside(r, whole, ear, other))
-            return false;
-    }
-    return true;
+/* The turn at a corner of the polygon that is left. */
+static double turn_at(const Cutter *cutter, uint32_t i) {
+    const Corner *at = &cutter->corners[i];
+    return turn(&cutter->corners[at->before], at, &cutter->corners[at->after]);
 }
 
-static bool find_ear(const RtMeshReader *r, RtVec3d whole, uint32_t *ear) {
-    const bool none = rt_dotd(whole, whole) == 0; /* the polygon crosses itself: its parts cancel out */
-    for (int flat = 0; flat < 2 && !none; flat++) {
-        for (*ear = 0; *ear < r->corner_count; ++*ear) {
-            if (is_ear(r, whole, *ear, flat)) return true;
+static void wait_for(Cutter *cutter, uint32_t i) {
+    if (cutter->corners[i].waits) return;
+    cutter->corners[i].waits = true;
+    cutter->queue[(cutter->first + cutter->waiting++) % cutter->count] = i;
+}
+
+static uint32_t voxel_of(const Cutter *cutter, int axis, double value) {
+    return (uint32_t)((value - cutter->low[axis]) * cutter->scale[axis]);
+}
+
+/* Whether a corner that is not convex lies in the triangle or on its edge. Keyhole polygons visit a point
+ * twice, so the points of the triangle itself do not count. */
+static bool is_free(Cutter *cutter, const Corner *a, const Corner *b, const Corner *c) {
+    const uint32_t x0 = voxel_of(cutter, 0, fmin(a->x, fmin(b->x, c->x))),
+                   x1 = voxel_of(cutter, 0, fmax(a->x, fmax(b->x, c->x))),
+                   y0 = voxel_of(cutter, 1, fmin(a->y, fmin(b->y, c->y))),
+                   y1 = voxel_of(cutter, 1, fmax(a->y, fmax(b->y, c->y)));
+    for (uint32_t y = y0; y <= y1; y++) {
+        for (uint32_t x = x0; x <= x1; x++) {
+            uint32_t *link = &cutter->voxels[y * cutter->side + x];
+            while (*link != NONE) {
+                const Corner *p = &cutter->corners[*link];
+                cutter->compared++;
+                if (p->before == NONE || turn_at(cutter, *link) > 0) { /* cut off, or convex by now */
+                    *link = p->next;
+                    continue;
+                }
+                const bool same = (p->x == a->x && p->y == a->y) || (p->x == b->x && p->y == b->y) ||
+                                  (p->x == c->x && p->y == c->y);
+                if (!same && turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
+                link = &cutter->corners[*link].next;
+            }
+            cutter->compared++;
         }
     }
-    return false;
+    return true;
 }
 
-static RtStatus cut_ears(RtMeshReader *r, RtVec3d whole) {
-    enum { MOST = 1000 }; /* the time grows with the cube of the number, at worst */
-    if (r->corner_count > MOST)
-        return rt_mesh_fail(r,
-                            "face %u (counted from 0) is concave and has %u corners, more than %d: split it",
-                            r->face_count, r->corner_count, MOST);
-    while (r->corner_count >= 3) {
-        const uint32_t n = r->corner_count;
-        uint32_t i;
-        if (!find_ear(r, whole, &i))
-            return rt_mesh_fail(r, "face %u (counted from 0) crosses itself: split it into triangles",
-                                r->face_count);
-        const RtMeshCorner ear[3] = {r->corners[(i + n - 1) % n], r->corners[i], r->corners[(i + 1) % n]};
-        RT_TRY(add_triangle(r, ear));
-        r->corner_count--;
-        memmove(&r->corners[i], &r->corners[i + 1], (n - 1 - i) * sizeof *r->corners);
+/* Whether a corner and its neighbours are an ear; or, with `flat`, a triangle of either orientation that is a
+ * millionth of the polygon at most. */
+static bool is_ear(Cutter *cutter, uint32_t i, bool flat) {
+    const Corner *at = &cutter->corners[i];
+    const double area = turn_at(cutter, i);
+    if (flat) return fabs(area) <= 1e-6 * cutter->area;
+    return area > 0 && is_free(cutter, &cutter->corners[at->before], at, &cutter->corners[at->after]);
+}
+
+static RtStatus cut(RtMeshReader *r, Cutter *cutter, uint32_t i) {
+    Corner *at = &cutter->corners[i];
+    const RtMeshCorner ear[3] = {r->corners[at->before], r->corners[i], r->corners[at->after]};
+    cutter->corners[at->before].after = at->after;
+    cutter->corners[at->after].before = at->before;
+    wait_for(cutter, at->before);
+    wait_for(cutter, at->after);
+    at->before = NONE;
+    cutter->left--;
+    return add_triangle(r, ear);
+}
+
+/* Cuts ears off until three corners or no ear is left. *start becomes a corner of what is left. */
+static RtStatus cut_ears(RtMeshReader *r, Cutter *cutter, uint32_t *start) {
+    uint32_t since = UINT32_MAX; /* corners left when all were last tried */
+    for (uint32_t i = 0; i < cutter->count; i++) wait_for(cutter, i);
+    while (cutter->left > 3) {
+        for (; cutter->waiting > 0 && cutter->left > 3; cutter->waiting--) {
+            const uint32_t i = cutter->queue[cutter->first];
+            cutter->first = (cutter->first + 1) % cutter->count;
+            cutter->corners[i].waits = false;
+            if (cutter->corners[i].before == NONE) continue;
+            *start = cutter->corners[i].before;
+            if (cutter->compared > cutter->most)
+                return rt_mesh_fail(r, "face %u (counted from 0), of %u corners, winds too much: split it",
+                                    r->face_count, r->corner_count);
+            if (is_ear(cutter, i, false)) RT_TRY(cut(r, cutter, i));
+        }
+        if (cutter->left <= 3) break;
+        const bool none = cutter->left == since;
+        since = cutter->left;
+        uint32_t i = *start, flat = NONE;
+        do {
+            if (none && flat == NONE && is_ear(cutter, i, true)) flat = i;
+            if (!none) wait_for(cutter, i);
+            i = cutter->corners[i].after;
+        } while (i != *start);
+        if (none && flat == NONE) return RT_OK;
+        if (!none) continue;
+        *start = cutter->corners[flat].before;
+        RT_TRY(cut(r, cutter, flat));
+    }
+    return RT_OK;
+}
+
+/* Projects the corners, and puts those that are not convex into the grid. */
+static void prepare(const RtMeshReader *r, RtVec3d whole, Cutter *cutter) {
+    const RtVec3d size = rt_vec3d(fabs(whole.x), fabs(whole.y), fabs(whole.z));
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const bool swap = whole.at[axis] < 0;
+    const int u = (axis + 1 + swap) % 3, v = (axis + 2 - swap) % 3;
+    double high[2];
+    for (uint32_t i = 0; i < cutter->count; i++) {
+        const RtVec3 at = r->vertices[r->corners[i].vertex];
+        const double place[2] = {(double)at.at[u], (double)at.at[v]};
+        cutter->corners[i] = (Corner){.x = place[0],
+                                      .y = place[1],
+                                      .before = (i + cutter->count - 1) % cutter->count,
+                                      .after = (i + 1) % cutter->count};
+        for (int a = 0; a < 2; a++) {
+            cutter->low[a] = i == 0 ? place[a] : fmin(cutter->low[a], place[a]);
+            high[a] = i == 0 ? place[a] : fmax(high[a], place[a]);
+        }
+    }
+    for (int a = 0; a < 2; a++) {
+        const double length = high[a] - cutter->low[a];
+        cutter->scale[a] = length > 0 ? (cutter->side - 0.5) / length : 0;
+    }
+    memset(cutter->voxels, 0xff, (size_t)cutter->side * cutter->side * sizeof *cutter->voxels);
+    for (uint32_t i = 0; i < cutter->count; i++) {
+        Corner *at = &cutter->corners[i];
+        if (turn_at(cutter, i) > 0) continue;
+        uint32_t *voxel =
+            &cutter->voxels[voxel_of(cutter, 1, at->y) * cutter->side + voxel_of(cutter, 0, at->x)];
+        at->next = *voxel;
+        *voxel = i;
+    }
+    cutter->area = size.at[axis];
+}
+
+static RtStatus warn_crossing(RtMeshReader *r) {
+    return rt_mesh_warn(r,
+                        "face %u (counted from 0) crosses itself: what has no ear became a fan of triangles",
+                        r->face_count);
+}
+
+/* Divides a polygon into ears, and what has none into a fan. */
+static RtStatus divide(RtMeshReader *r, RtVec3d whole) {
+    RT_ARENA(memory);
+    const uint32_t count = r->corner_count, side = (uint32_t)sqrt((double)count) + 1;
+    Cutter cutter = {.corners = rt_arena_alloc_unset(&memory, count, sizeof(Corner)),
+                     .voxels = rt_arena_alloc_unset(&memory, (size_t)side * side, sizeof(uint32_t)),
+                     .queue = rt_arena_alloc_unset(&memory, count, sizeof(uint32_t)),
+                     .count = count,
+                     .left = count,
+                     .side = side,
+                     .most = (uint64_t)count * 20000 + 1000000};
+    uint32_t first = 0;
+    RT_TRY(rt_arena_check(&memory, "dividing a polygon", r->text.error));
+    prepare(r, whole, &cutter);
+    RT_TRY(cut_ears(r, &cutter, &first));
+    if (cutter.left > 3) RT_TRY(warn_crossing(r));
+    for (uint32_t i = cutter.corners[first].after; cutter.corners[i].after != first;
+         i = cutter.corners[i].after) {
+        const RtMeshCorner triangle[3] = {r->corners[first], r->corners[i],
+                                          r->corners[cutter.corners[i].after]};
+        RT_TRY(add_triangle(r, triangle));
     }
     return RT_OK;
 }
 
 RtStatus rt_mesh_add_polygon(RtMeshReader *r) {
-    if (r->corner_count < 3)
-        return rt_mesh_fail(r, "face %u (counted from 0) has %u vertices: a polygon has at least 3",
-                            r->face_count, r->corner_count);
     RtVec3d whole = {0, 0, 0};
+    RtStatus status = RT_OK;
     for (uint32_t i = 1; i + 1 < r->corner_count; i++) whole = rt_addd(whole, twice_area(r, 0, i, i + 1));
-    if (!first_sees_all(r, whole)) RT_TRY(cut_ears(r, whole));
-    for (uint32_t i = 1; i + 1 < r->corner_count; i++) {
+    const bool fan = first_sees_all(r, whole), flat = rt_dotd(whole, whole) == 0;
+    if (r->corner_count < 3)
+        status = rt_mesh_warn(r, "face %u (counted from 0) has %u corners, and was left out", r->face_count,
+                              r->corner_count);
+    else if (!fan)
+        status = flat ? warn_crossing(r) : divide(r, whole);
+    for (uint32_t i = 1; (fan || flat) && i + 1 < r->corner_count && status == RT_OK; i++) {
         const RtMeshCorner triangle[3] = {r->corners[0], r->corners[i], r->corners[i + 1]};
-        RT_TRY(add_triangle(r, triangle));
+        status = add_triangle(r, triangle);
     }
     r->corner_count = 0;
     r->face_count++;
-    return RT_OK;
+    return status;
 }
 
 /* ---- text formats ---- */
+
+RtStatus rt_mesh_begin_text(RtMeshReader *r) {
+    enum { CTRL_Z = 0x1A };
+    RtScanner *text = &r->text;
+    const char *end = text->end;
+    while (text->end > text->at && (text->end[-1] == 0 || text->end[-1] == CTRL_Z)) text->end--;
+    if (memchr(text->at, 0, (size_t)(text->end - text->at)))
+        return rt_mesh_fail(r, "there is a byte of 0 in this text: it is binary, or damaged");
+    if (text->end < end)
+        RT_TRY(
+            rt_mesh_warn(r, "the file ends with bytes of 0 or ^Z (%td): they are ignored", end - text->end));
+    if (text->end - text->at >= 3 && memcmp(text->at, "\xEF\xBB\xBF", 3) == 0) text->at += 3;
+    *(char *)text->end = 0;
+    return RT_OK;
+}
 
 RtStatus rt_mesh_take(RtMeshReader *r, bool first, const char *wanted, RtWord *word) {
     *word = rt_scan_peek(&r->text);
@@ -187,7 +345,7 @@ RtStatus rt_mesh_expect(RtMeshReader *r, const char *text) {
     const RtWord word = rt_scan_peek(&r->text);
     char wanted[64];
     snprintf(wanted, sizeof wanted, "'%s'", text);
-    if (!rt_scan_is(word, text)) return rt_scan_fail(&r->text, word, wanted);
+    if (!rt_scan_is_like(word, text)) return rt_scan_fail(&r->text, word, wanted);
     rt_scan_take(&r->text, word);
     return RT_OK;
 }
@@ -219,11 +377,28 @@ RtStatus rt_mesh_take_vector(RtMeshReader *r, bool first, const char *wanted, Rt
     return RT_OK;
 }
 
+RtStatus rt_mesh_take_normal(RtMeshReader *r, RtVec3 *out) {
+    RtWord word;
+    for (int a = 0; a < 3; a++) {
+        RT_TRY(rt_mesh_take(r, false, "the x y z of a normal", &word));
+        if (rt_scan_float(word, &out->at[a])) continue;
+        out->at[a] = NAN;
+    }
+    return RT_OK;
+}
+
 RtStatus rt_mesh_end(RtMeshReader *r) {
     const RtWord word = rt_scan_peek(&r->text);
     if (word.length > 0) return rt_scan_fail(&r->text, word, "the end of the file");
     if (word.first) return RT_OK;
-    return rt_mesh_fail(r,
-                        "the last line has no line break, so its end may be missing: add a line break if the "
-                        "file is complete");
+    return rt_mesh_warn(r, "the last line has no line break: its end may be missing");
+}
+
+RtStatus rt_mesh_end_binary(RtMeshReader *r) {
+    const ptrdiff_t more = r->text.end - r->text.at;
+    if (more == 0) return RT_OK;
+    if (more < RT_MESH_FEW_BYTES)
+        return rt_mesh_warn(r, "the file has %td bytes more than its header declares: they are ignored",
+                            more);
+    return rt_mesh_fail(r, "the file has %td bytes more than its header declares", more);
 }

@@ -4,7 +4,9 @@
 #include "core/scene/mesh.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 enum { HEADER = 80, FACET = 50 };
 
@@ -12,11 +14,23 @@ static uint64_t binary_size(const void *bytes) {
     return RT_MESH_HEAD + (uint64_t)FACET * rt_mesh_u32((const char *)bytes + HEADER);
 }
 
-/* A binary file may begin with "solid", too: its size decides. */
+/* The first word of a text, behind blanks and a byte-order mark. */
+static bool begins_with_solid(const unsigned char *bytes) {
+    if (memcmp(bytes, "\xEF\xBB\xBF", 3) == 0) bytes += 3;
+    while (*bytes == ' ' || (*bytes >= '\t' && *bytes <= '\r')) bytes++;
+    return strncasecmp((const char *)bytes, "solid", 5) == 0;
+}
+
+/* A binary file may begin with "solid", too: its size decides. A few bytes may follow. */
+static bool is_binary(const void *bytes, uint64_t size) {
+    return size >= RT_MESH_HEAD && size >= binary_size(bytes) &&
+           size - binary_size(bytes) < RT_MESH_FEW_BYTES;
+}
+
 RtStatus rt_mesh_check_stl(RtMeshReader *r, const RtMeshHead *head) {
     const bool zeros = memchr(head->bytes, 0, head->size < RT_MESH_HEAD ? (size_t)head->size : RT_MESH_HEAD);
-    if (head->size >= RT_MESH_HEAD && head->size == binary_size(head->bytes)) return RT_OK;
-    if (memcmp(head->bytes, "solid", 5) == 0 && !zeros) return RT_OK;
+    if (is_binary(head->bytes, head->size)) return RT_OK;
+    if (begins_with_solid(head->bytes) && (!zeros || head->size < RT_MESH_HEAD)) return RT_OK;
     if (head->size < RT_MESH_HEAD)
         return rt_mesh_fail(r,
                             "this is no STL file: it does not begin with 'solid', and has no binary header");
@@ -41,7 +55,17 @@ static RtStatus read_binary(RtMeshReader *r, const char *bytes) {
         for (size_t k = 0; k < 3; k++) RT_TRY(rt_mesh_add_vertex(r, rt_mesh_vector(facet + 12 + 12 * k)));
         RT_TRY(add_facet(r));
     }
-    return RT_OK;
+    r->text.at += binary_size(bytes);
+    return rt_mesh_end_binary(r);
+}
+
+/* "endloop", or "end loop" */
+static RtStatus expect_end(RtMeshReader *r, const char *of) {
+    char whole[16];
+    snprintf(whole, sizeof whole, "end%s", of);
+    const bool apart = rt_scan_is_like(rt_scan_peek(&r->text), "end");
+    if (apart) RT_TRY(rt_mesh_expect(r, "end"));
+    return rt_mesh_expect(r, apart ? of : whole);
 }
 
 static RtStatus read_facet(RtMeshReader *r) {
@@ -57,16 +81,16 @@ static RtStatus read_facet(RtMeshReader *r) {
         RT_TRY(rt_mesh_take_vector(r, false, "the x y z of a vertex", &vertex));
         RT_TRY(rt_mesh_add_vertex(r, vertex));
     }
-    RT_TRY(rt_mesh_expect(r, "endloop"));
-    RT_TRY(rt_mesh_expect(r, "endfacet"));
+    RT_TRY(expect_end(r, "loop"));
+    RT_TRY(expect_end(r, "facet"));
     return add_facet(r);
 }
 
 static RtStatus read_solid(RtMeshReader *r) {
     RT_TRY(rt_mesh_expect(r, "solid"));
     rt_scan_skip_line(&r->text); /* its name */
-    while (rt_scan_is(rt_scan_peek(&r->text), "facet")) RT_TRY(read_facet(r));
-    RT_TRY(rt_mesh_expect(r, "endsolid"));
+    while (rt_scan_is_like(rt_scan_peek(&r->text), "facet")) RT_TRY(read_facet(r));
+    RT_TRY(expect_end(r, "solid"));
     rt_scan_skip_line(&r->text);
     return RT_OK;
 }
@@ -74,11 +98,8 @@ static RtStatus read_solid(RtMeshReader *r) {
 RtStatus rt_mesh_read_stl(RtMeshReader *r) {
     const size_t size = (size_t)(r->text.end - r->text.at);
     r->text.last = 0;
-    if (size >= RT_MESH_HEAD && size == binary_size(r->text.at)) return read_binary(r, r->text.at);
-    const char *zero = memchr(r->text.at, 0, size);
-    if (zero)
-        return rt_mesh_fail(r, "byte %zu (counted from 0) is 0, in a text file: it is damaged",
-                            (size_t)(zero - r->text.at));
+    if (is_binary(r->text.at, size)) return read_binary(r, r->text.at);
+    RT_TRY(rt_mesh_begin_text(r));
     do RT_TRY(read_solid(r));
     while (rt_scan_peek(&r->text).length > 0);
     return RT_OK;

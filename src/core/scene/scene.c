@@ -382,5 +382,6 @@ void rt_scene_clear(RtScene *scene) {
     rt_free(scene->material_of);
     rt_free(scene->materials);
     rt_free(scene->lights);
+    rt_warnings_clear(&scene->warnings);
     *scene = (RtScene){0};
 }

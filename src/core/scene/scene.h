@@ -6,6 +6,7 @@
 #ifndef RT_SCENE_SCENE_H
 #define RT_SCENE_SCENE_H
 
+#include "core/base/warnings.h"
 #include "core/scene/camera.h"
 #include "core/shape/geometry.h"
 
@@ -47,6 +48,7 @@ typedef struct RtScene {
     RtVec3 background; /* colour of a ray that hits nothing */
     RtCamera camera;
     RtSampling sampling; /* of the camera's image: defines the primary rays */
+    RtWarnings warnings; /* about the files it was read from */
 } RtScene;
 
 /* Opens the scene named `spec` and finishes it; on failure *scene is empty. */

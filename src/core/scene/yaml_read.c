@@ -300,6 +300,7 @@ static RtStatus solid_mesh(Reader *r, const RtYamlNode *n, uint32_t *index) {
         status = rt_solid_add_mesh(&r->builder.set, g->triangles, g->triangle_count, NULL, index, r->error);
         status = rt_yaml_place(&r->yaml, status, n, "path");
     }
+    if (status == RT_OK) status = rt_warnings_append(&r->scene->warnings, &scene.warnings, r->error);
     rt_scene_clear(&scene);
     return status;
 }

@@ -36,6 +36,8 @@ void rt_scan_take(RtScanner *scanner, RtWord word);
 void rt_scan_skip_line(RtScanner *scanner);
 
 bool rt_scan_is(RtWord word, const char *text);
+/* The same in upper or lower case. */
+bool rt_scan_is_like(RtWord word, const char *text);
 
 /* Reads the whole word, a decimal number such as -1, .5 or 2.5e-3, as the float32 nearest to it, ties to
  * even. False if it is no such number, or overflows. In the locale of C (library.h sees to that). */

@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Meshes as other programs write them: what is odd but means one thing is read, and what was left out or
+ * guessed is said once for each kind. */
+#include "scene_testing.h"
+
+#include "core/base/clock.h"
+#include "core/scene/mesh.h"
+
+typedef struct Odd {
+    const char *extension, *text;
+    uint32_t triangles;
+    const char *warning; /* a part of the only one; NULL: there is none */
+} Odd;
+
+static const char *path_of(const char *extension) {
+    static char path[256];
+    snprintf(path, sizeof path, RT_BINARY_DIR "/test_mesh_warnings.%s", extension);
+    return path;
+}
+
+static void assert_reads(const Odd *odd, size_t size) {
+    RtScene scene;
+    const RtStatus status = open_bytes(path_of(odd->extension), odd->text, size, &scene, error);
+    if (status != RT_OK) fail_msg("%s: %s", odd->text, error->message);
+    if (scene.geometry.triangle_count != odd->triangles)
+        fail_msg("%s: %u triangles, not %u", odd->text, scene.geometry.triangle_count, odd->triangles);
+    const uint32_t count = scene.warnings.count;
+    const char *said = count > 0 ? scene.warnings.list[0].message : "";
+    if (count != (odd->warning != NULL) || (odd->warning && !strstr(said, odd->warning)))
+        fail_msg("%s: %u warnings, the first: %s", odd->text, count, said);
+    rt_scene_clear(&scene);
+}
+
+#define ASSERT_READS(cases)                                                                                  \
+    for (size_t i = 0; i < sizeof(cases) / sizeof(cases)[0]; i++)                                            \
+    assert_reads(&(cases)[i], strlen((cases)[i].text))
+
+#define V3 "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+
+RT_TEST(obj_of_other_programs_is_read) {
+    static const Odd cases[] = {
+        {"obj", V3 "f 1// 2// 3//\n", 1, NULL},
+        {"obj", V3 "vt 0 0\nf 1/1/ 2/1/ 3/1/\n", 1, NULL},
+        {"obj", V3 "vt 0 0\nf 1/ 2/ 3/\n", 1, NULL},
+        {"obj", V3 "f 1 2\\\n3\n", 1, NULL},
+        {"obj", V3 "f 1 \\\r\n2 \\\r\n3\r\n", 1, NULL},
+        {"obj", "f 1 2 3\n" V3, 1, NULL},
+        {"obj", "v 0 0 0\nf 1 2 3\nv 1 0 0\nv 0 1 0\nf -1 -2 -3\n", 2, NULL},
+        {"obj", V3 "f 1 2 3", 1, "no line break"},
+        {"obj", V3 "f 1 2 3\n\x1a", 1, "^Z"},
+        {"obj", V3 "f 1//1 2//1 3//1\n", 1, "does not exist (normal 1)"},
+        {"obj", V3 "f 1/0 2/0 3/0\n", 1, "does not exist (texture coordinate 0)"},
+        {"obj", V3 "vn nan 0 0\nf 1//1 2//1 3//1\n", 1, "a normal is not finite"},
+        {"obj", V3 "vt nan nan\nf 1/1 2/1 3/1\n", 1, NULL},
+        {"obj", "v 0 0 0 2\nv 1 0 0 2\nv 0 1 0 1\nf 1 2 3\n", 1, "has a weight"},
+        {"obj", V3 "f 1 2 3\nf 1 2\nf 1\n", 1, "face 1 (counted from 0) has 2 corners"},
+        {"obj", V3 "cstype bezier\ncurv 0 1 1 2\nend\nf 1 2 3\n", 1, "curves"},
+        {"obj", V3 "l 1 2\nf 1 2 3\n", 1, "points, lines"},
+        {"obj", V3 "vendor_word 1 2\nf 1 2 3\n", 1, "'vendor_word'"},
+        {"obj", V3 "vn 0 0 1 7\nf 1//1 2//1 3//1\n", 1, "more than 3 numbers"},
+    };
+    ASSERT_READS(cases);
+}
+
+#define XYZ  "property float x\nproperty float y\nproperty float z\n"
+#define FACE "property list uchar int vertex_indices\n"
+
+RT_TEST(ply_of_other_programs_is_read) {
+    static const Odd cases[] = {
+        {"ply",
+         "ply\nformat ascii 1.0\nelement face 1\n" FACE "element vertex 3\n" XYZ "end_header\n"
+         "3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n",
+         1, NULL},
+        {"ply",
+         "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "property uchar red\nelement face 1\n" FACE
+         "end_header\n0 0 0 255.0\n1 0 0 1.0\n0 1 0 2\n3.0 0 1 2\n",
+         1, NULL},
+        {"ply",
+         "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "property float s\nelement face 1\n" FACE
+         "end_header\n0 0 0 nan\n1 0 0 -nan\n0 1 0 inf\n3 0 1 2\n",
+         1, "no finite number"},
+        {"ply",
+         "ply\nformat ascii 1.0\nelement vertex 4\n" XYZ "element tristrips 1\n" FACE
+         "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 1 2\n",
+         3, NULL},
+        {"ply",
+         "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 2\n" FACE
+         "end_header\n0 0 0\n1 0 0\n0 1 0\n0\n3 0 1 2\n",
+         1, "has 0 corners"},
+        {"ply",
+         "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 1\n" FACE
+         "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2",
+         1, "no line break"},
+    };
+    ASSERT_READS(cases);
+}
+
+#define FACET "facet normal nan 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+
+RT_TEST(stl_and_off_of_other_programs_are_read) {
+    static const Odd cases[] = {
+        {"stl",
+         "SOLID A\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\n"
+         "ENDFACET\nENDSOLID\n",
+         1, NULL},
+        {"stl", "  solid a\n" FACET "endloop\nendfacet\nendsolid a\n", 1, NULL},
+        {"stl", "\xEF\xBB\xBFsolid a\n" FACET "endloop\nendfacet\nendsolid a\n", 1, NULL},
+        {"stl", "solid a\n" FACET "end loop\nend facet\nend solid a\n", 1, NULL},
+        {"off", "OFF3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 1, NULL},
+        {"off", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 1, NULL},
+        {"off", "STOFF\n3 1 0\n0 0 0 0 0\n1 0 0 0 1\n0 1 0 1 1\n3 0 1 2\n", 1, NULL},
+        {"off",
+         "STCNOFF\n3 1 0\n0 0 0 0 0 1 1 1 1 1 0 0\n1 0 0 0 0 1 1 1 1 1 0 0\n"
+         "0 1 0 0 0 1 1 1 1 1 0 0\n3 0 1 2\n",
+         1, NULL},
+        {"off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2", 1, "no line break"},
+    };
+    ASSERT_READS(cases);
+    static const char binary[] = "OFF BINARY\n\0\0\0\3\0\0\0\1\0\0\0\0"
+                                 "\0\0\0\0\0\0\0\0\0\0\0\0\x3f\x80\0\0\0\0\0\0\0\0\0\0"
+                                 "\0\0\0\0\x3f\x80\0\0\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\1\0\0\0\2\0\0\0\0!";
+    assert_reads(&(Odd){"off", binary, 1, NULL}, sizeof binary - 2);
+    assert_reads(&(Odd){"off", binary, 1, "1 bytes more"}, sizeof binary - 1);
+}
+
+/* A document of one triangle: its accessor 0 are the positions, of the first 36 bytes of the buffer; `more`
+ * are other accessors and members. */
+#define TRIANGLE "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"
+#define GLTF(nodes, primitive, accessors, views, size, bytes, more)                                          \
+    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0.0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[" nodes "],"     \
+    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0" primitive "}]}],"                         \
+    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126.0,\"count\":3,\"type\":\"VEC3\"}" accessors     \
+    "],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}" views "],\"buffers\":[{\"byteLength\":" size       \
+    ",\"uri\":\"data:;base64," bytes "\"}]" more "}\n"
+#define ONE_NODE "{\"mesh\":0,\"extras\":[1e300,99999999999999999999999,\"\\u0000\"]}"
+
+RT_TEST(gltf_of_other_programs_is_read) {
+    static const Odd cases[] = {
+        {"gltf", GLTF(ONE_NODE, "}", "", "", "36", TRIANGLE, ""), 1, NULL},
+        {"gltf",
+         GLTF(ONE_NODE, "}", "", "", "36", TRIANGLE, ",\"extensionsRequired\":[\"MSFT_texture_dds\"]"), 1,
+         NULL},
+        {"gltf", GLTF(ONE_NODE, "}", "", "", "36", TRIANGLE, ",\"animations\":[{}]"), 1, "animations"},
+        {"gltf", GLTF(ONE_NODE, "}},{\"mode\":1,\"attributes\":{\"POSITION\":0}", "", "", "36", TRIANGLE, ""),
+         1, "points and lines"},
+    };
+    ASSERT_READS(cases);
+}
+
+static float corner(const char *text, int vertex, int axis) {
+    OWNED_SCENE scene = scene_of(path_of("gltf"), text);
+    return scene.geometry.triangles[0].v[vertex].at[axis];
+}
+
+/* Element 1 becomes (2, 3, 4); the index, of one byte, and its place in the buffer. */
+RT_TEST(sparse_accessors_replace_elements) {
+    static const char text[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":"
+        "{\"count\":1,\"indices\":{\"bufferView\":1,\"componentType\":5121},\"values\":{\"bufferView\":2}}}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":1,\"byteLength\":1},"
+        "{\"buffer\":2,\"byteLength\":12}],\"buffers\":[{\"byteLength\":36,\"uri\":\"data:;base64," TRIANGLE
+        "\"},{\"byteLength\":1,\"uri\":\"data:;base64,AQ==\"},{\"byteLength\":12,\"uri\":\"data:;base64,"
+        "AAAAQAAAQEAAAIBA\"}]}\n";
+    assert_true(corner(text, 1, 0) == 2 && corner(text, 1, 1) == 3 && corner(text, 1, 2) == 4);
+    assert_true(corner(text, 2, 1) == 1);
+}
+
+/* Positions of normalised bytes: 127 is 1, and -128 is -1, too. */
+RT_TEST(quantised_positions_are_read) {
+    static const char text[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"KHR_mesh_quantization\"],"
+        "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[2,2,2]}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5120,\"normalized\":true,\"count\":3,"
+        "\"type\":\"VEC3\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":12,\"byteStride\":4}],"
+        "\"buffers\":[{\"byteLength\":12,\"uri\":\"data:;base64,AAAAAH8AAAAAgAAA\"}]}\n";
+    assert_true(corner(text, 1, 0) == 2 && corner(text, 2, 1) == -2);
+}
+
+/* The target moves each vertex by (1, 0, 0); its weight is 0.5. */
+RT_TEST(morph_targets_have_their_weights_at_rest) {
+    static const char text[] =
+        GLTF("{\"mesh\":0,\"weights\":[0.5]}", "},\"targets\":[{\"POSITION\":1}]",
+             ",{\"bufferView\":1,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}",
+             ",{\"buffer\":0,\"byteOffset\":36,\"byteLength\":36}", "72",
+             TRIANGLE "AACAPwAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAAAAAAAAA", "");
+    assert_true(corner(text, 0, 0) == 0.5f && corner(text, 1, 0) == 1.5f && corner(text, 2, 1) == 1);
+}
+
+/* Joint 0, node 1, is moved by z = 3, and bound where z = 1; the node of the mesh, moved by x, does not
+ * count. */
+RT_TEST(skins_are_in_the_pose_of_their_joints) {
+    static const char text[] = GLTF(
+        "{\"mesh\":0,\"skin\":0,\"translation\":[9,0,0],\"children\":[1]},{\"translation\":[-9,0,3]}",
+        ",\"JOINTS_0\":1,\"WEIGHTS_0\":2}",
+        ",{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":\"VEC4\"}"
+        ",{\"bufferView\":2,\"componentType\":5121,\"normalized\":true,\"count\":3,\"type\":\"VEC4\"}"
+        ",{\"bufferView\":3,\"componentType\":5126,\"count\":1,\"type\":\"MAT4\"}",
+        ",{\"buffer\":0,\"byteOffset\":36,\"byteLength\":12},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":"
+        "12}"
+        ",{\"buffer\":0,\"byteOffset\":60,\"byteLength\":64}",
+        "124",
+        TRIANGLE "AAAAAAAAAAAAAAAA/wAAAP8AAAD/AAAA"
+                 "AACAPwAAAAAAAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIC/AACAPw==",
+        ",\"skins\":[{\"joints\":[1],\"inverseBindMatrices\":3}]");
+    assert_true(corner(text, 0, 0) == 0 && corner(text, 0, 2) == 2 && corner(text, 1, 0) == 1);
+}
+
+/* Two instances, moved by (0, 0, 0) and (5, 0, 0). */
+RT_TEST(instances_of_a_mesh_become_copies) {
+    static const char text[] =
+        GLTF("{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":1}}}}",
+             "}", ",{\"bufferView\":1,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\"}",
+             ",{\"buffer\":0,\"byteOffset\":36,\"byteLength\":24}", "60",
+             TRIANGLE "AAAAAAAAAAAAAAAAAACgQAAAAAAAAAAA", "");
+    assert_reads(&(Odd){"gltf", text, 2, "become copies"}, strlen(text));
+    OWNED_SCENE scene = open_scene(path_of("gltf"));
+    assert_true(scene.geometry.triangles[1].v[0].x == 5);
+}
+
+RT_TEST(what_cannot_be_read_says_what_to_do) {
+    static const struct {
+        const char *extension, *text, *says;
+    } cases[] = {
+        {"gltf",
+         GLTF(ONE_NODE, "}", "", "", "36", TRIANGLE,
+              ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]"),
+         "export it without compression"},
+        {"gltf",
+         GLTF(ONE_NODE, "}", "", "", "36", TRIANGLE, ",\"extensionsRequired\":[\"EXT_meshopt_compression\"]"),
+         "EXT_meshopt_compression"},
+        {"obj", "\xFF\xFEv", "UTF-16"},
+        {"ply", "version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "git lfs pull"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtScene scene;
+        assert_bad_input(
+            open_bytes(path_of(cases[i].extension), cases[i].text, strlen(cases[i].text), &scene, error),
+            cases[i].says);
+    }
+}
+
+/* ---- polygons ---- */
+
+RT_TEST(polygons_that_cross_themselves_become_fans_with_a_warning) {
+    static const Odd cases[] = {
+        {"obj", "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 3 0\nf 1 2 3 4\n", 2,
+         "face 0 (counted from 0) crosses itself"},
+        {"obj", "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\nf 1 2 3 4\n", 2,
+         "face 0 (counted from 0) crosses itself"},
+    };
+    ASSERT_READS(cases);
+}
+
+/* A strip that winds about the origin: its inner border, then its outer one backwards. */
+RT_TEST(a_spiral_of_many_corners_is_divided_in_no_time) {
+    enum { HALF = 20000 };
+    FILE *out = fopen(path_of("obj"), "w");
+    double expected = 0, area = 0;
+    assert_non_null(out);
+    for (int i = 0; i < 2 * HALF; i++) {
+        const int k = i < HALF ? i : 2 * HALF - 1 - i;
+        const double angle = 0.05 * k, radius = 1 + angle + (i < HALF ? 2 : 0);
+        fprintf(out, "v %.6f %.6f 0\n", radius * cos(angle), radius * sin(angle));
+    }
+    fprintf(out, "f");
+    for (int i = 1; i <= 2 * HALF; i++) fprintf(out, " %d", i);
+    fprintf(out, "\n");
+    assert_int_equal(fclose(out), 0);
+    const double start = rt_wall_seconds();
+    OWNED_SCENE scene = open_scene(path_of("obj"));
+    assert_true(rt_wall_seconds() - start < 20);
+    assert_int_equal(scene.geometry.triangle_count, 2 * HALF - 2);
+    assert_int_equal(scene.warnings.count, 0);
+    for (uint32_t i = 0; i < scene.geometry.triangle_count; i++) {
+        const RtVec3 *v = scene.geometry.triangles[i].v;
+        area += rt_lengthd(rt_area_vector(rt_widen(v[0]), rt_widen(v[1]), rt_widen(v[2]))) / 2;
+    }
+    for (int k = 0; k + 1 < HALF; k++) { /* of the quadrilaterals between the borders */
+        const double a = 1 + 0.05 * k, b = 1 + 0.05 * (k + 1), turn = sin(0.05) / 2;
+        expected += turn * ((a + 2) * (b + 2) - a * b);
+    }
+    assert_true(fabs(area / expected - 1) < 1e-3);
+}
+
+RT_TEST(warnings_of_a_kind_are_counted_and_copied_into_a_scene_that_names_the_file) {
+    write_text(path_of("obj"), V3 "f 1 2 3\nf 1 2\nf 2 3\nf 1 3\n");
+    OWNED_SCENE scene =
+        scene_of(RT_BINARY_DIR "/test_mesh_warnings.yaml",
+                 "materials: {m: {}}\nobjects:\n  - mesh: {path: test_mesh_warnings.obj, material: m}\n");
+    char text[RT_WARNING_TEXT];
+    assert_int_equal(scene.warnings.count, 1);
+    assert_non_null(strstr(rt_warning_text(&scene.warnings.list[0], text), "(and 2 more like it)"));
+    assert_non_null(strstr(text, "test_mesh_warnings.obj:5: "));
+}
+
+RT_TESTS(mesh_warnings, NULL, NULL)
