@@ -99,7 +99,10 @@ double rt_estimate_width(const RtEstimate *estimate) {
 RtEstimate rt_estimate_ratio(const double *over, const double *under, uint32_t count) {
     double ratios[RT_MAX_ROUNDS];
     assert(count >= 1 && count <= RT_MAX_ROUNDS);
-    for (uint32_t i = 0; i < count; i++) ratios[i] = over[i] / under[i];
+    for (uint32_t i = 0; i < count; i++) {
+        if (!(under[i] > 0)) return rt_estimate_exactly((double)NAN);
+        ratios[i] = over[i] / under[i];
+    }
     return rt_estimate(ratios, count);
 }
 

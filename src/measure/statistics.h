@@ -94,7 +94,7 @@ double rt_student_quantile(uint32_t freedom, double coverage);
  * the American Statistical Association 56(293)). */
 double rt_coverage_of_each(uint32_t count);
 
-/* Estimate of the ratios over[i] / under[i]: paired, so that drift, which slows both, cancels. */
+/* Estimate of the ratios over[i] / under[i]: pairs, so that drift cancels. NaN if an under[i] is 0. */
 RtEstimate rt_estimate_ratio(const double *over, const double *under, uint32_t count);
 
 /* The probability, 0..1, that the interval of `count` measurements holds the median; 1 <= count <=

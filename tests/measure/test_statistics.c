@@ -131,6 +131,8 @@ RT_TEST(ratios_are_paired_within_a_round) {
     }
     RtEstimate e = rt_estimate_ratio(over, under, 20);
     assert_true(e.median == 2 && e.low == 2 && e.high == 2);
+    under[3] = 0;
+    assert_true(isnan(rt_estimate_ratio(over, under, 20).median));
 }
 
 /* Critical values of Mann and Whitney's U for two samples of 10, of 5, of 4 at 5 %: 23, 2, 0 (so the ends are
