@@ -512,7 +512,7 @@ static void add_swept(RtTable *table, Row *row) {
 /* Appends the column of reasons if there are any: files without are those of version 1.0. */
 static void add_refused(RtTable *table, Row *row) {
     const RtExperiment *e = row->results->experiment;
-    bool any = false;
+    bool any = row->results->reasons;
     for (uint32_t t = 0; t < e->workload_count; t++) {
         for (uint32_t c = 0; c < e->candidate_count; c++) any |= rt_build_at(row->results, t, c)->refused;
     }
