@@ -99,8 +99,7 @@ typedef struct RtResults {
     RtCell *cells;                       /* see rt_cell_at */
     RtMachine machines[RT_MAX_MACHINES]; /* the first is the unknown one */
     uint32_t machine_count;
-    bool old_rows,
-        reasons;          /* tables: no rows of refused accelerators, as in 1.0; a column of reasons anyway */
+    int refusals; /* their column in tables: 1 always, 0 if there are any, -1 never, as in version 1.0 */
     json_t *first_claims; /* owned: the list of claims when the run began, from its journal; NULL: unknown */
 } RtResults;
 
