@@ -394,17 +394,15 @@ static bool add_kind(const RtCell *over, const RtCell *under, double weight, boo
 static bool sum_rounds(const RtResults *results, uint32_t t, uint32_t over, uint32_t under, RtRayKind kind,
                        Sums *sums) {
     const RtExperiment *e = results->experiment;
+    const bool alone = kind != RT_ALL_RAYS;
     double weights = 0;
     *sums = (Sums){.rounds = 0};
-    if (kind != RT_ALL_RAYS)
-        return add_kind(timed_cell(results, t, over, kind), timed_cell(results, t, under, kind), 1, true,
-                        sums);
     for (uint32_t k = 0; k < e->kind_count; k++) weights += rt_results_weight(results, t, e->kinds[k]);
     for (uint32_t k = 0; k < e->kind_count; k++) {
         const RtRayKind one = e->kinds[k];
-        const double weight = rt_results_weight(results, t, one) / weights;
+        const double weight = alone ? one == kind : rt_results_weight(results, t, one) / weights;
         if (weight > 0 && !add_kind(timed_cell(results, t, over, one), timed_cell(results, t, under, one),
-                                    weight, false, sums))
+                                    weight, alone, sums))
             return false;
     }
     return sums->rounds > 0;
