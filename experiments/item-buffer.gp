@@ -16,7 +16,7 @@ with_build(frames) = theirs(0) / (column("ns") + 1e9 * column("build_seconds") /
 set logscale x 2
 set xrange [200 : 2600]
 set logscale y 2
-set yrange [0.4 : 24]
+set yrange [0.4 : 60]
 eval "set ytics ".ratio_tics(0.4, 24)
 set grid ytics
 set xtics (256, 512, 1024, 2048)

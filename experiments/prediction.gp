@@ -3,12 +3,12 @@
 #: 1-cost: Time per ray over the expected cost, both over the least of the scene and family, one panel per kind of rays.
 #:   A color for each family of structures, a marker for each scene. Logarithmic axes; on the line they grow alike.
 #: 2-time: Measured nanoseconds per ray, over those from times of a ray, a test and a step, one marker per scene.
-#:   The times were fitted to the same structure on all other scenes. Both axes logarithmic.
+#:   The times were fitted to the same family on the other scenes. Both axes logarithmic.
 
 families = "bvh grid octree"
 n_families = words(families); n_scenes = words(scenes); n_kinds = words(kinds)
-is(f, s, k) = strcol("scene") eq word(scenes, s) && strcol("kind") eq word(kinds, k) && \
-              strcol("accel")[1:strlen(word(families, f)) + 1] eq word(families, f).":" && !strstrt(strcol("accel"), "(again)")
+of_family(f) = strcol("accel")[1:strlen(word(families, f)) + 1] eq word(families, f).":" && !strstrt(strcol("accel"), "(again)")
+is(f, s, k) = strcol("scene") eq word(scenes, s) && strcol("kind") eq word(kinds, k) && of_family(f)
 array least_cost[n_families * n_scenes * n_kinds]; array least_time[|least_cost|]
 cell(f, s, k) = ((f - 1) * n_scenes + s - 1) * n_kinds + k
 do for [f = 1:n_families] { do for [s = 1:n_scenes] { do for [k = 1:n_kinds] {
@@ -42,24 +42,33 @@ do for [k = 1:n_kinds] {
 unset multiplot
 unset output
 
-# ---- time from tests and steps: constants are fitted to the same structure on the other scenes ----
+# ---- time from tests and steps: constants are fitted to the same family on the other scenes ----
 
-n_accels = words(accels)
-other(s, a) = strcol("accel") eq word(accels, a) && strcol("scene") ne word(scenes, s)
-own(s, a) = strcol("accel") eq word(accels, a) && strcol("scene") eq word(scenes, s)
+other(s, f) = of_family(f) && strcol("scene") ne word(scenes, s)
+own(s, f) = of_family(f) && strcol("scene") eq word(scenes, s)
 per_ray(name) = column(name) / column("rays")
-f(x, y) = p * p + q * q * x + r * r * y # none is less than nothing
-set fit quiet nolog
-unset logscale; set autoscale # a fit leaves out what lies beyond
-array base_ns[n_scenes * n_accels]; array test_ns[|base_ns|]; array step_ns[|base_ns|]
-do for [s = 1:n_scenes] { do for [a = 1:n_accels] {
-  i = (s - 1) * n_accels + a
+# Relative errors are least, with times that are not negative: Gauss-Seidel on the normal equations.
+over_time(name, s, f) = other(s, f) ? (name eq "" ? 1 : per_ray(name)) / column("ns") : NaN
+not_negative(x) = x > 0 ? x : 0
+unset logscale; set autoscale # statistics leave out what lies beyond
+array base_ns[n_scenes * n_families]; array test_ns[|base_ns|]; array step_ns[|base_ns|]
+do for [s = 1:n_scenes] { do for [f = 1:n_families] {
+  i = (s - 1) * n_families + f
   base_ns[i] = NaN
-  stats "times.csv" using (own(s, a) && column("ns") > 0 ? 1 : 0) nooutput
+  stats "times.csv" using (own(s, f) && column("ns") > 0 ? 1 : 0) nooutput
   if (STATS_max > 0) {
-    p = 5; q = 3; r = 2
-    fit f(x, y) "times.csv" using (other(s, a) ? per_ray("object_tests") : NaN):(per_ray("steps")):(column("ns")):(column("ns")) zerror via p, q, r
-    base_ns[i] = p * p; test_ns[i] = q * q; step_ns[i] = r * r
+    stats "times.csv" using (over_time("", s, f)):(over_time("object_tests", s, f)) nooutput
+    one_one = STATS_sumsq_x; one_test = STATS_sumxy; one = STATS_sum_x
+    stats "times.csv" using (over_time("", s, f)):(over_time("steps", s, f)) nooutput
+    one_step = STATS_sumxy
+    stats "times.csv" using (over_time("object_tests", s, f)):(over_time("steps", s, f)) nooutput
+    p = 0; q = 0; r = 0
+    do for [round = 1:1000] {
+      p = not_negative((one - q * one_test - r * one_step) / one_one)
+      q = not_negative((STATS_sum_x - p * one_test - r * STATS_sumxy) / STATS_sumsq_x)
+      r = not_negative((STATS_sum_y - p * one_step - q * STATS_sumxy) / STATS_sumsq_y)
+    }
+    base_ns[i] = p; test_ns[i] = q; step_ns[i] = r
   }
 } }
 
@@ -76,7 +85,7 @@ set key at screen 0.54, screen 0.95 left top vertical maxrows n_scenes Left reve
 unset title
 plot x with lines linecolor rgb soft notitle, \
      for [s = 1:n_scenes] NaN with points pointtype mark(s) pointsize 0.7 linecolor rgb hue(s) title word(scenes, s), \
-     for [s = 1:n_scenes] for [a = 1:n_accels] "times.csv" using (own(s, a) ? (i = (s - 1) * n_accels + a, \
+     for [s = 1:n_scenes] for [f = 1:n_families] "times.csv" using (own(s, f) ? (i = (s - 1) * n_families + f, \
          base_ns[i] + test_ns[i] * per_ray("object_tests") + step_ns[i] * per_ray("steps")) : NaN):(column("ns")) \
        with points pointtype mark(s) pointsize 0.55 linecolor rgb hue(s) notitle
 unset multiplot

@@ -49,7 +49,8 @@ concludes 0 'octree:best, chosen by other rays: octree.* .primary' 'figure +rati
 # ---- builds and rays on unlike threads ----
 
 # brute has nothing to build, and is far slower: no noise hides either.
-experiment 'accelerators: [{accel: bvh}, {accel: brute}]' 'expect: ["break_even of brute on cloud > 1"]'
+experiment 'accelerators: [{accel: bvh}, {accel: brute}]' 'expect: ["break_even of brute on cloud > 1"]' \
+    'scenes: [{scene: "random:n=3000", label: cloud, size: 64x64, depth: 2}]'
 concludes 0 'faster up to' 'holds +break_even of brute'
 sed -i 's/\("timed":.*"threads":\)1/\12/' out/cells.jsonl # as before there was one number of threads
 ends 0 report out

@@ -185,7 +185,7 @@ fork EAGAIN clone,clone3,fork,vfork'
 # traced OPTION...: the command under strace, to ../trace
 traced() {
     # shellcheck disable=SC2086
-    timeout 30 strace -f -qq -o ../trace "$@" "$program" $arguments >../printed 2>../said </dev/null
+    timeout 30 strace --seccomp-bpf -f -qq -o ../trace "$@" "$program" $arguments >../printed 2>../said </dev/null
 }
 
 # The calls so far when the last library is loaded, and all of them.

@@ -28,9 +28,6 @@ for directory in "$reference"/*/; do ln -s "$PWD/$directory" "$index/$(basename 
 "$program" report --index "$index" >/dev/null
 diff "$reference/index.md" "$index/index.md"
 
-cc -O2 -fPIC -shared -I include examples/bih/bih.c -o "$index/bih.so" # of dammertz-2008
-export RAYTALLY_PLUGINS=$index
-
 failed=0 skipped=0
 for directory in "$reference"/*/; do
     directory=${directory%/}

@@ -49,6 +49,17 @@ static inline int remove_place(void **state) {
         return make_place_with(state, experiment);                                                           \
     }
 
+/* A new experiment of primary rays, with a millisecond for a round; for rt_free. */
+static inline RtExperiment *primary_experiment(const char *name) {
+    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    assert_non_null(e);
+    rt_experiment_init(e);
+    strcpy(e->name, name);
+    e->milliseconds = 1;
+    e->kind_count = 1;
+    return e;
+}
+
 typedef struct Path {
     char text[256];
 } Path;

@@ -28,7 +28,7 @@ seeds() {
     nff) printf '%s\n' scenes/*.nff ;;
     experiment) printf '%s\n' experiments/*.yaml experiments/{lecture,papers}/*.yaml ;;
     manifest) printf '%s\n' results/reference/*/manifest.json ;;
-    packed-journal) printf '%s\n' results/reference/{bittner-2013,dammertz-2008}/*.gz ;;
+    packed-journal) printf '%s\n' results/reference/{bittner-2013,width}/*.gz ;;
     csv) printf '%s\n' results/reference/*/verify.csv experiments/published/*.csv ;;
     esac
 }

@@ -370,7 +370,7 @@ RAYTALLY_API raytally_status raytally_estimate_median(const double *values, uint
                                                       raytally_estimate *out, raytally_error *error);
 
 /** Estimates the ratio over[i] / under[i] of paired measurements; pairing cancels drift of the machine.
- * `count` as above. */
+ * `count` as above. NaN if an under[i] is 0. */
 RAYTALLY_API raytally_status raytally_estimate_ratio(const double *over, const double *under, uint32_t count,
                                                      raytally_estimate *out, raytally_error *error);
 

@@ -110,7 +110,7 @@ static RtStatus compare_file(Again *again, RtResultFile file, RtError *error) {
     RT_TRY(rt_path_join(again->directory, rt_result_files[file], path, error));
     RT_TRY(rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error));
     const char *column = strstr(kept, ",refused");
-    results.old_rows = !column || column > kept + strcspn(kept, "\n");
+    results.refusals = !column || column > kept + strcspn(kept, "\n") ? -1 : 1;
     RtStatus status = rt_memory_file_open(&counted, error);
     if (status == RT_OK) rt_result_csv_write(file, &results, counted.file);
     if (status == RT_OK) status = rt_memory_file_close(&counted, "the counts", error);

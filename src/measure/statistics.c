@@ -100,7 +100,7 @@ RtEstimate rt_estimate_ratio(const double *over, const double *under, uint32_t c
     double ratios[RT_MAX_ROUNDS];
     assert(count >= 1 && count <= RT_MAX_ROUNDS);
     for (uint32_t i = 0; i < count; i++) {
-        if (!(under[i] > 0)) return rt_estimate_exactly((double)NAN);
+        if (under[i] == 0) return rt_estimate_exactly((double)NAN);
         ratios[i] = over[i] / under[i];
     }
     return rt_estimate(ratios, count);

@@ -177,10 +177,9 @@ void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX
 void rt_frame_legend(const RtExperiment *experiment, const char *mark, char out[RT_MAX_FRAME_TEXT]) {
     snprintf(out, RT_MAX_FRAME_TEXT,
              "Mtests: object tests of a whole frame, in millions; ms: time to trace it; build: ms to build, "
-             "both on as many "
-             "threads. fewer, faster: how many times, than %s; "
-             "primary, shadow, bounce (reflection and transmission): how many times faster. -: no such rays, "
-             "or not counted. %s: the %s of %s.",
+             "both on as many threads. fewer, faster: how many times, than %s; primary, shadow, bounce "
+             "(reflection and transmission): how many times faster. -: no such rays, or not counted. "
+             "%s: the %s of %s.",
              experiment->frame.without, mark, experiment->count_only ? "best" : "fastest",
              experiment->frame.among);
 }

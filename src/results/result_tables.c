@@ -456,7 +456,7 @@ static const void *row_at(void *context, size_t i) {
     const bool null = r->candidate == e->candidate_count, first = i < e->candidate_count;
     const bool counted = r->cell->counted, timed = r->cell->timed;
     const bool best = candidate_of(r)->member_count > 0;
-    const bool refused = !null && r->build->refused && !r->results->old_rows && r->scene->rays[r->kind] > 0;
+    const bool refused = !null && r->build->refused && r->results->refusals >= 0 && r->scene->rays[r->kind];
     r->cost = rt_results_cost(r->results, r->workload, r->candidate, kinds_of(r));
     rt_candidate_show(e, r->candidate, r->shown);
     const bool there[] = {
@@ -512,11 +512,11 @@ static void add_swept(RtTable *table, Row *row) {
 /* Appends the column of reasons if there are any: files without are those of version 1.0. */
 static void add_refused(RtTable *table, Row *row) {
     const RtExperiment *e = row->results->experiment;
-    bool any = false;
+    bool any = row->results->refusals > 0;
     for (uint32_t t = 0; t < e->workload_count; t++) {
         for (uint32_t c = 0; c < e->candidate_count; c++) any |= rt_build_at(row->results, t, c)->refused;
     }
-    if (any && !row->results->old_rows) add_group(table, row, (RtColumnGroup)ONE(refused));
+    if (any && row->results->refusals >= 0) add_group(table, row, (RtColumnGroup)ONE(refused));
 }
 
 /* Of any cell. */

@@ -372,9 +372,11 @@ static bool are_together(const RtCell *one, const RtCell *other) {
                   one->rounds * sizeof(double)) == 0;
 }
 
-static bool add_kind(const RtCell *over, const RtCell *under, double weight, Sums *sums) {
+/* Times of other rounds are scaled by the baseline's; of other rays only if their kind is `alone`: in a sum
+ * it would weigh what the baseline took on the few rays of a thinned set. */
+static bool add_kind(const RtCell *over, const RtCell *under, double weight, bool alone, Sums *sums) {
     if (!over || !under || over->baseline != under->baseline) return false;
-    const bool together = are_together(over, under);
+    const bool as_they_are = are_together(over, under) || (!alone && over->tally.rays != under->tally.rays);
     const double *a = rt_cell_round_times(over, RT_ROUND_SECONDS),
                  *b = rt_cell_round_times(under, RT_ROUND_SECONDS),
                  *base_a = rt_cell_round_times(over, RT_ROUND_BASELINE),
@@ -383,7 +385,7 @@ static bool add_kind(const RtCell *over, const RtCell *under, double weight, Sum
     if (sums->rounds == 0 || rounds < sums->rounds) sums->rounds = rounds;
     for (uint32_t r = 0; r < sums->rounds; r++) {
         sums->over[r] += weight * a[r];
-        sums->under[r] += weight * (together ? b[r] : b[r] / base_b[r] * base_a[r]);
+        sums->under[r] += weight * (as_they_are ? b[r] : b[r] / base_b[r] * base_a[r]);
     }
     return true;
 }
@@ -392,16 +394,15 @@ static bool add_kind(const RtCell *over, const RtCell *under, double weight, Sum
 static bool sum_rounds(const RtResults *results, uint32_t t, uint32_t over, uint32_t under, RtRayKind kind,
                        Sums *sums) {
     const RtExperiment *e = results->experiment;
+    const bool alone = kind != RT_ALL_RAYS;
     double weights = 0;
     *sums = (Sums){.rounds = 0};
-    if (kind != RT_ALL_RAYS)
-        return add_kind(timed_cell(results, t, over, kind), timed_cell(results, t, under, kind), 1, sums);
     for (uint32_t k = 0; k < e->kind_count; k++) weights += rt_results_weight(results, t, e->kinds[k]);
     for (uint32_t k = 0; k < e->kind_count; k++) {
         const RtRayKind one = e->kinds[k];
-        const double weight = rt_results_weight(results, t, one) / weights;
-        if (weight > 0 &&
-            !add_kind(timed_cell(results, t, over, one), timed_cell(results, t, under, one), weight, sums))
+        const double weight = alone ? one == kind : rt_results_weight(results, t, one) / weights;
+        if (weight > 0 && !add_kind(timed_cell(results, t, over, one), timed_cell(results, t, under, one),
+                                    weight, alone, sums))
             return false;
     }
     return sums->rounds > 0;

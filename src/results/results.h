@@ -100,7 +100,7 @@ typedef struct RtResults {
     RtCell *cells;                       /* see rt_cell_at */
     RtMachine machines[RT_MAX_MACHINES]; /* the first is the unknown one */
     uint32_t machine_count;
-    bool old_rows;        /* tables have no rows of refused accelerators, like files of version 1.0 */
+    int refusals; /* their column in tables: 1 always, 0 if there are any, -1 never, as in version 1.0 */
     json_t *first_claims; /* owned: the list of claims when the run began, from its journal; NULL: unknown */
 } RtResults;
 
@@ -222,7 +222,8 @@ uint32_t rt_results_rounds(const RtResults *results, uint32_t workload, uint32_t
 
 /* Times of accelerators relative to each other are divided within each round, so that what slows a round
  * slows both. Only cells that were timed in the same rounds can be paired directly; of others each is first
- * divided by the baseline of its own rounds and rays. */
+ * divided by the baseline of its own rounds and rays. In a sum over kinds, times on thinned and on other sets
+ * of rays are added as they were measured. */
 
 /* The time of a ray: of one kind, or with RT_ALL_RAYS the weighted mean of all kinds, summed within each
  * round. Its interval covers at least `coverage`, 0.95 or more (rt_estimate_covering); that of a journal of

@@ -133,7 +133,7 @@ static double widest_of(const TimingRun *run, uint32_t *candidate) {
         RtEstimate ratio =
             rt_estimate_ratio(baseline->seconds, run->timed[run->place[c]].seconds, run->rounds);
         double width = rt_estimate_width(&ratio);
-        if (width <= widest) continue;
+        if (!(width > widest)) continue; /* nor is an unknown one */
         widest = width;
         *candidate = c;
     }

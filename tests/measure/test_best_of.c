@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The best of several settings: which are its members, by which rays it chooses, and what is timed. */
-#include "testing.h"
+#include "experiment_testing.h"
 
 #include "results/result_tables.h"
-#include "run/workload.h"
 
 static const RtWorkloadOptions options = {.threads = 1, .timing = 1};
 
@@ -20,12 +19,7 @@ static void add(RtExperiment *e, const char *spec, const char *settings, const c
 static RtExperiment *experiment_of(const char *spec, const char *settings, const char *scene, uint32_t size,
                                    const char *baseline) {
     const RtWorkload like = {.depth = 1, .width = size, .height = size};
-    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
-    assert_non_null(e);
-    rt_experiment_init(e);
-    strcpy(e->name, "chosen");
-    e->milliseconds = 1;
-    e->kind_count = 1;
+    RtExperiment *e = primary_experiment("chosen");
     add(e, spec, "", "", 1);
     add(e, spec, "", "some", 7);
     add(e, "grid:best", settings, "", 1);

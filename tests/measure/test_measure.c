@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* measure/measure.h and workload.h: counts are sums over threads and are compared with right answers; thinned
  * candidates are timed against the baseline on their own rays. */
-#include "testing.h"
+#include "experiment_testing.h"
 
 #include "core/base/clock.h"
 #include "measure/measure.h"
@@ -108,12 +108,7 @@ RT_TEST(shadow_and_occlusion_rays_are_traced_for_any_hit) {
 
 /* An experiment with primary rays, of one or two specs. */
 static RtExperiment *experiment_of(const char *one, const char *other) {
-    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
-    assert_non_null(e);
-    rt_experiment_init(e);
-    strcpy(e->name, "measured");
-    e->milliseconds = 1;
-    e->kind_count = 1;
+    RtExperiment *e = primary_experiment("measured");
     for (const char *spec = one; spec; spec = spec == one ? other : NULL) {
         RtCandidate *candidate = &e->candidates[e->candidate_count++];
         *candidate = (RtCandidate){.ray_stride = 1};
