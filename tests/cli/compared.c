@@ -83,7 +83,7 @@ RtStatus __wrap_rt_rounds_run(RtRunner *runners, size_t count, const RtRounds *r
         drawn[i].context = &drawn[i];
     }
     RtStatus status = __real_rt_rounds_run(drawn, count, rounds, done, error);
-    for (size_t i = 0; i < count; i++) runners[i].repeats = drawn[i].repeats;
+    for (size_t i = 0; i < count; i++) runners[i].repeats = 1; /* no ray was traced, and none learnt */
     return status;
 }
 

@@ -85,8 +85,8 @@ RT_TEST(a_thinned_set_stands_for_its_kind_as_it_was_measured) {
     set_rounds(1, RT_RAY_PRIMARY, slow, few);
     set_rounds(1, RT_RAY_SHADOW, slow, base);
     rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY)->tally.rays = 10;
-    assert_true(rt_results_time_ratio(&results, 0, 1, 0, RT_ALL_RAYS, 0.95).median == 60);
-    assert_true(rt_results_time_ratio(&results, 0, 1, 0, RT_RAY_PRIMARY, 0.95).median == 20);
+    assert_float_equal(rt_results_time_ratio(&results, 0, 1, 0, RT_ALL_RAYS, 0.95).median, 60, 1e-9);
+    assert_float_equal(rt_results_time_ratio(&results, 0, 1, 0, RT_RAY_PRIMARY, 0.95).median, 20, 1e-9);
 }
 
 /* By the interval of 95 % grid:density=1 is slower. */
