@@ -20,8 +20,9 @@ static const char *path_of(const char *extension) {
 
 static void assert_reads(const Odd *odd, size_t size) {
     RtScene scene;
-    const RtStatus status = open_bytes(path_of(odd->extension), odd->text, size, &scene, error);
-    if (status != RT_OK) fail_msg("%s: %s", odd->text, error->message);
+    RtError failure;
+    const RtStatus status = open_bytes(path_of(odd->extension), odd->text, size, &scene, &failure);
+    if (status != RT_OK) fail_msg("%s: %s", odd->text, failure.message);
     if (scene.geometry.triangle_count != odd->triangles)
         fail_msg("%s: %u triangles, not %u", odd->text, scene.geometry.triangle_count, odd->triangles);
     const uint32_t count = scene.warnings.count;

@@ -32,7 +32,7 @@ RtStatus rt_warn_at(RtWarnings *warnings, const char *file, size_t line, RtError
     va_end(arguments);
     if (atomic_load(&refused)) return rt_fail_at(error, file, line, 0, "%s", words);
     rt_fail_at(&placed, file, line, 0, "%s", words);
-    snprintf(made.message, sizeof made.message, "%s", placed.message);
+    snprintf(made.message, sizeof made.message, "%.*s", (int)sizeof made.message - 1, placed.message);
     return rt_append(&warnings->list, &warnings->count, &warnings->capacity, &made, sizeof made, error);
 }
 

@@ -429,7 +429,7 @@ static RtStatus morph(Gltf *g, const json_t *primitive, const json_t *weights, c
  * sums[vertex] the weights. */
 static RtStatus blend(Gltf *g, const json_t *attributes, int set, const Skin *skin, uint32_t count,
                       RtArena *memory, RtTransform *blended, double *sums) {
-    char name[16];
+    char name[24];
     Values joints, weights;
     snprintf(name, sizeof name, "JOINTS_%d", set);
     RT_TRY(read_attribute(g, json_object_get(attributes, name), count, 4, memory, &joints));
@@ -452,7 +452,7 @@ static RtStatus apply_skin(Gltf *g, const json_t *attributes, const Skin *skin, 
                            Values *positions, Values *normals) {
     RtTransform *blended = rt_arena_alloc(memory, positions->count, sizeof *blended);
     double *sums = rt_arena_alloc(memory, positions->count, sizeof *sums);
-    char name[16];
+    char name[24];
     RT_TRY(rt_arena_check(memory, "a skin of glTF", g->mesh->text.error));
     for (int set = 0; snprintf(name, sizeof name, "JOINTS_%d", set), json_object_get(attributes, name); set++)
         RT_TRY(blend(g, attributes, set, skin, positions->count, memory, blended, sums));
@@ -621,7 +621,7 @@ static RtStatus add_mesh_of(Gltf *g, const Item *node, const RtTransform *whole)
                  *weights = json_object_get(node->object, "weights");
     Item mesh = {0};
     Skin skin = {0};
-    RtTransform *instances;
+    RtTransform *instances = NULL;
     uint32_t count;
     RT_TRY(find_item(g, "meshes", json_object_get(node->object, "mesh"), NO_INDEX, "a node", &mesh));
     if (skin_reference) RT_TRY(read_skin(g, skin_reference, &memory, &skin));
