@@ -290,7 +290,7 @@ RT_TEST(warnings_of_a_kind_are_counted_and_copied_into_a_scene_that_names_the_fi
     write_text(path_of("obj"), V3 "f 1 2 3\nf 1 2\nf 2 3\nf 1 3\n");
     OWNED_SCENE scene =
         scene_of(RT_BINARY_DIR "/test_mesh_warnings.yaml",
-                 "materials: {m: {}}\nobjects:\n  - mesh: {path: test_mesh_warnings.obj, material: m}\n");
+                 "materials: [{name: m}]\nobjects: [{mesh: {path: test_mesh_warnings.obj, material: m}}]\n");
     char text[RT_WARNING_TEXT];
     assert_int_equal(scene.warnings.count, 1);
     assert_non_null(strstr(rt_warning_text(&scene.warnings.list[0], text), "(and 2 more like it)"));
