@@ -17,7 +17,7 @@ set logscale x 2
 set xrange [200 : 2600]
 set logscale y 2
 set yrange [0.4 : 60]
-eval "set ytics ".ratio_tics(0.4, 24)
+eval "set ytics ".ratio_tics(0.4, 60)
 set grid ytics
 set xtics (256, 512, 1024, 2048)
 set xlabel "samples along a side" textcolor rgb ink

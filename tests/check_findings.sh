@@ -17,8 +17,10 @@ for yaml in experiments/*.yaml experiments/{lecture,papers}/*.yaml; do
     [ -z "$said" ] || problem=$said
     if [ -z "$problem" ] && [ -d "$work/results/$name" ]; then
         # Predictions may fail; what stands below the finding does not hold in it, or in a verdict.
-        problem=$("$program" report "$work/results/$name" 2>&1 |
-            sed -n '/^Finding:/,$p' | grep -E '^  (does not hold|undecided|not supported) ' && echo "$name")
+        "$program" report "$work/results/$name" >"$work/printed" 2>&1 && grep -q '^Finding:' "$work/printed" ||
+            problem="$name has no report of a finding: $(cat "$work/printed")"
+        said=$(sed -n '/^Finding:/,$p' "$work/printed" | grep -E '^  (does not hold|undecided|not supported) ') &&
+            problem="$name: $said"
     fi
     [ -z "$problem" ] || complain "$problem"
 done
