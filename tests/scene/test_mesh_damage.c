@@ -118,7 +118,7 @@ static bool is_cut_between_lines(const struct Mesh *mesh, size_t size) {
     return strcmp(mesh->extension, "obj") == 0 && size > 0 && mesh->bytes[size - 1] == '\n';
 }
 
-RT_TEST(a_mesh_cut_anywhere_is_the_same_mesh_or_refused) {
+RT_TEST(a_mesh_cut_anywhere_is_the_same_mesh_or_refused_or_warned_of) {
     OWNED_SCENE square = open_whole(&whole[0]);
     for (size_t i = 0; i < FORMATS; i++) {
         const struct Mesh *mesh = &whole[i];
@@ -128,7 +128,7 @@ RT_TEST(a_mesh_cut_anywhere_is_the_same_mesh_or_refused) {
             const RtStatus status = load_bytes(mesh->extension, mesh->bytes, size, &part, &problem);
             if (status != RT_OK)
                 assert_int_equal(status, RT_BAD_INPUT);
-            else if (!is_cut_between_lines(mesh, size))
+            else if (part.warnings.count == 0 && !is_cut_between_lines(mesh, size))
                 assert_same_triangles(&part, &square);
         }
     }
@@ -184,23 +184,12 @@ RT_TEST(a_damaged_obj_is_refused_with_its_line) {
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\n", "", "no triangle"},
         {"v 0 0 0\nv nan 0 0\n", "2:", "expected a finite number that fits float32, found 'nan'"},
         {"v 0 0 0\nv 0 0\nv 0 1 0\n", "2:", "expected the x y z of a vertex, found the end of the line"},
-        {"v 0 0 0 v 1 0 0\n", "1:", "found 'v'"},
-        {"v 0 0 0 2\n", "1:", "a weight of 2"},
-        {"vn 0 0 1 1\n", "1:", "a normal has 3 numbers"},
         {"v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n", "4:", "exceeds"},
-        {"v 0 0 0\nv 1 0 0\nf 1 2 9\n", "3:", "names vertex 9, but there are 2 so far"},
+        {"v 0 0 0\nv 1 0 0\nf 1 2 9\n", "3:", "names vertex 9, but there are 2"},
         {"v 0 0 0\nv 1 0 0\nf 1 2 0\n", "3:", "names vertex 0"},
         {"v 0 0 0\nv 1 0 0\nf 1 2 -3\n", "3:", "names vertex -3"},
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 99999999999999999999\n", "4:", "expected an integer"},
-        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2 3\n", "4:", "names normal 1, but there are 0"},
-        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2 3\n", "4:", "names texture coordinate 1"},
-        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/ 2 3\n", "4:", "expected v, v/vt, v//vn or v/vt/vn"},
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/// 2 3\n", "4:", "expected v, v/vt, v//vn or v/vt/vn"},
-        {"v 0 0 0\nv 1 0 0\nf 1 2\n", "3:", "has 2 vertices: a polygon has at least 3"},
-        {"v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 3 0\nf 1 2 3 4\n", "5:", "face 0 (counted from 0) crosses itself"},
-        {"v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\nf 1 2 3 4\n", "5:", "face 0 (counted from 0) crosses itself"},
-        {"v 0 0 0\nsurf 0 1 0 1\n", "2:", "expected a statement of a polygon mesh"},
-        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "4:", "the last line has no line break"},
     };
     ASSERT_REFUSED("obj", cases);
 }
@@ -226,13 +215,11 @@ RT_TEST(a_damaged_ply_is_refused_with_its_line) {
         {PLY_HEADER PLY_VERTICES "3 0 1 2\n", "14:", "ends after 1 of the 2 faces"},
         {PLY_HEADER "0 0 0\n", "10:", "ends after 1 of the 4 vertices"},
         {PLY_HEADER PLY_VERTICES "3 0 1 2\n3 0 2", "15:", "found the end of the file"},
-        {PLY_HEADER PLY_VERTICES "3 0 1 2\n3 0 2 3", "15:", "no line break"},
         {PLY "3 0 2 3\n", "16:", "expected the end of the file, found '3'"},
         {PLY_HEADER "0 0\n1 0 0\n", "10:", "found the end of the line"},
-        {PLY_HEADER "0 0 0 1\n", "10:", "expected the end of the line, found '1'"},
+        {PLY_HEADER "0 0 0 1 0 0\n", "10:", "ends after 1 of the 4 vertices"},
         {PLY_HEADER PLY_VERTICES "4 0 1 2 99999999\n", "14:", "names vertex 99999999, but there are 4"},
         {PLY_HEADER PLY_VERTICES "5 0 1 2 0 -1\n", "14:", "names vertex -1"},
-        {PLY_HEADER PLY_VERTICES "0\n", "14:", "has 0 vertices"},
         {PLY_HEADER PLY_VERTICES "-3 0 1 2\n", "14:", "a list has -3 numbers"},
         {HEADER_OF(
              "element vertex 3\n" XYZ
@@ -241,14 +228,14 @@ RT_TEST(a_damaged_ply_is_refused_with_its_line) {
         {PLY_HEADER "0 0 inf\n", "10:", "expected a finite number"},
         {HEADER_OF("element vertex 4000000000\n" XYZ), "7:", "ends after 0 of the 4000000000 vertices"},
         {HEADER_OF("element vertex -1\n" XYZ), "3:", "a count of at least 0"},
-        {HEADER_OF("element none 999999999999\n"), "", "no triangle"},
+        {HEADER_OF("element none 999999999999\n"), "4:", "there must be one element 'vertex', not 0"},
         {HEADER_OF("element vertex 1\nproperty float x\n"), "5:", "lacks a property x, y or z"},
         {HEADER_OF("element vertex 1\n" XYZ "element face 1\n"), "8:", "lacks a list vertex_indices"},
-        {HEADER_OF("element face 1\nproperty list uchar int vertex_index\n"), "5:", "must come before"},
+        {HEADER_OF("element face 1\nproperty list uchar int vertex_index\n"),
+         "5:", "must be one element 'vertex', not 0"},
         {HEADER_OF("property float x\n"), "3:", "without an element"},
         {HEADER_OF("element vertex 1\nproperty real x\n"), "4:", "expected a type"},
         {HEADER_OF("element vertex 1\nproperty float x\nproperty int x\n"), "5:", "twice"},
-        {HEADER_OF("elements vertex 1\n"), "3:", "expected format, element, property"},
         {"ply\nend_header\n", "2:", "no line 'format'"},
         {"ply\nformat ascii 2.0\n", "2:", "version 1.0"},
         {"ply\nformat text 1.0\n", "2:", "expected ascii, binary_little_endian"},
@@ -291,7 +278,7 @@ RT_TEST(a_damaged_stl_is_refused) {
 
 RT_TEST(a_damaged_off_is_refused_with_its_line) {
     static const Damaged cases[] = {
-        {"", "1:", "expected OFF, COFF, NOFF or CNOFF, found the end of the file"},
+        {"", "1:", "expected OFF, or it with ST, C and N before it, found the end of the file"},
         {"OFF\n4 2\n", "3:", "expected the numbers of vertices, faces and edges"},
         {"OFF\n4000000000 1 0\n0 0 0\n", "3:", "ends after 1 of the 4000000000 vertices"},
         {"OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "6:", "ends after 1 of the 2 faces"},
@@ -406,14 +393,14 @@ RT_TEST(gltf_that_repeats_its_meshes_too_often_for_its_size_is_refused) {
 
 RT_TEST(the_sizes_that_a_binary_file_declares_must_be_its_own) {
     static const struct {
-        size_t mesh, at; /* the byte that grows by 1; 0: the file grows by a byte */
+        size_t mesh, at; /* the byte that grows by 1; 0: the file grows */
         const char *says;
     } cases[] = {
         {GLB, 4, "this is glTF 3: only 2 can be read"},
         {GLB, 8, "bytes, but the file has"},
         {GLB, 12, "expected a chunk BIN"}, /* the length of the JSON */
         {BINARY_STL, 80, "the header declares 3 triangles, which take 234 bytes, but the file has 184"},
-        {BINARY_PLY, 51, "face 0 (counted from 0) has 0 vertices"}, /* the number of vertices */
+        {BINARY_PLY, 51, "there is no triangle"}, /* the number of vertices */
         {GLB, 0, "declares"},
         {BINARY_STL, 0, "declares"},
         {BINARY_PLY, 0, "declares"},
@@ -424,7 +411,7 @@ RT_TEST(the_sizes_that_a_binary_file_declares_must_be_its_own) {
         if (cases[i].at)
             changed.bytes[cases[i].at]++;
         else
-            changed.size++;
+            changed.size += 13; /* fewer are a warning */
         assert_bad_input(load_bytes(changed.extension, changed.bytes, changed.size, &scene, error),
                          cases[i].says);
     }
@@ -436,7 +423,7 @@ RT_TEST(a_byte_of_zero_is_refused_in_text_with_its_place) {
         RtScene scene;
         char place[300];
         snprintf(place, sizeof place, "%s:2:3: ", path_of(names[i]));
-        assert_bad_input_at(load_bytes(names[i], "# x\nv \0", 7, &scene, error), place, "a byte of 0");
+        assert_bad_input_at(load_bytes(names[i], "OFF\nv \0 1", 9, &scene, error), place, "a byte of 0");
     }
 }
 
@@ -455,12 +442,11 @@ RT_TEST(a_gigabyte_of_zeros_is_refused_soon) {
     }
 }
 
-RT_TEST(a_polygon_of_many_corners_is_read_or_refused_soon) {
+RT_TEST(a_polygon_of_many_corners_is_read_soon) {
     enum { CORNERS = 99999 };
     static char text[60 * CORNERS];
     for (int concave = 0; concave < 2; concave++) {
         OWNED_SCENE scene;
-        RtError problem;
         size_t size = 0;
         for (int i = 0; i < CORNERS; i++)
             size += (size_t)sprintf(text + size, "v %d %.1f 0\n", i, concave ? i % 2 : (double)i * i);
@@ -468,9 +454,8 @@ RT_TEST(a_polygon_of_many_corners_is_read_or_refused_soon) {
         for (int i = 1; i <= CORNERS; i++) size += (size_t)sprintf(text + size, " %d", i);
         size += (size_t)sprintf(text + size, "\n");
         const double start = rt_wall_seconds();
-        const RtStatus status = load_bytes("obj", text, size, &scene, &problem);
-        assert_int_equal(status, concave ? RT_BAD_INPUT : RT_OK);
-        if (concave) assert_non_null(strstr(problem.message, "more than 1000: split it"));
+        assert_ok(load_bytes("obj", text, size, &scene, error));
+        assert_int_equal(scene.geometry.triangle_count, CORNERS - 2);
         assert_true(rt_wall_seconds() - start < RT_SHARE(2, 20));
     }
 }

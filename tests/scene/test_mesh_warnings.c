@@ -92,8 +92,25 @@ RT_TEST(ply_of_other_programs_is_read) {
          "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 1\n" FACE
          "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2",
          1, "no line break"},
+        {"ply",
+         "ply\nformat ascii 1.0\nCreated by hand\nelement vertex 3\n" XYZ "element face 1\n" FACE
+         "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+         1, "is not PLY's is left out: 'Created'"},
+        {"ply",
+         "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 1\n" FACE
+         "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 9 9\n",
+         1, "more numbers than the header declares"},
     };
     ASSERT_READS(cases);
+}
+
+/* The first number begins with a byte that would be LF. */
+RT_TEST(a_binary_ply_may_end_the_lines_of_its_header_with_cr_alone) {
+    static const char binary[] = "ply\rformat binary_little_endian 1.0\relement vertex 3\r"
+                                 "property uchar x\rproperty uchar y\rproperty uchar z\relement face 1\r"
+                                 "property list uchar uchar vertex_index\rend_header\r"
+                                 "\n\0\0\1\0\0\0\1\0\3\0\1\2";
+    assert_reads(&(Odd){"ply", binary, 1, NULL}, sizeof binary - 1);
 }
 
 #define FACET "facet normal nan 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"

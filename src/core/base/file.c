@@ -236,7 +236,7 @@ RtStatus rt_memory_file_close(RtMemoryFile *memory, const char *what, RtError *e
 
 /* ---- reading ---- */
 
-static RtStatus fail_zero(const char *path, const char *text, const char *zero, RtError *error) {
+RtStatus rt_file_fail_zero(const char *path, const char *text, const char *zero, RtError *error) {
     size_t line = 1;
     const char *start = text;
     for (const char *end; (end = memchr(start, '\n', (size_t)(zero - start))); start = end + 1) line++;
@@ -254,7 +254,7 @@ static RtStatus read_pieces(FILE *file, const char *path, bool text, char *buffe
         if (ferror(file)) return fail_io(error, "reading", path);
         if (got == 0) break;
         const char *zero = text ? memchr(buffer + *size, '\0', got) : NULL;
-        if (zero) return fail_zero(path, buffer, zero, error);
+        if (zero) return rt_file_fail_zero(path, buffer, zero, error);
         *size += got;
     }
     if (text && *size >= 3 && memcmp(buffer, "\xEF\xBB\xBF", 3) == 0) memmove(buffer, buffer + 3, *size -= 3);

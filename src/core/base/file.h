@@ -84,6 +84,9 @@ RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size,
 /* The same for text: rejects a byte of 0, with its place, and leaves out a byte-order mark (UTF-8). */
 RtStatus rt_file_read_text(const char *path, size_t limit, char **text, size_t *size, RtError *error);
 
+/* Fails at the place of a byte of 0 in the text of a file. */
+RtStatus rt_file_fail_zero(const char *path, const char *text, const char *zero, RtError *error);
+
 bool rt_file_exists(const char *path);
 bool rt_file_exists_in(const char *folder, const char *name);
 

@@ -38,8 +38,9 @@ static RtStatus check_contents(RtMeshReader *r, const RtMeshHead *head, bool tex
                                 i == 0 ? "lfs pull" : "annex get");
     }
     if (wide) return rt_mesh_fail(r, "this is text in UTF-16: save it as UTF-8");
-    if (!text || head->size < RT_MESH_HEAD || !memchr(head->bytes, 0, RT_MESH_HEAD)) return RT_OK;
-    return rt_mesh_fail(r, "there is a byte of 0 at its beginning: it is a binary or damaged file, not text");
+    const char *start = (const char *)head->bytes, *zero = memchr(start, 0, RT_MESH_HEAD);
+    if (!text || head->size < RT_MESH_HEAD || !zero) return RT_OK;
+    return rt_file_fail_zero(r->text.path, start, zero, r->text.error);
 }
 
 static RtStatus check_head(const Format *format, RtMeshReader *r) {

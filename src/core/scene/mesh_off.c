@@ -97,6 +97,12 @@ RtStatus rt_mesh_check_off(RtMeshReader *r, const RtMeshHead *head) {
                : rt_mesh_fail(r, "this is no OFF file: it begins with a byte of 0");
 }
 
+/* Looks ahead at the second word. */
+static bool is_binary(RtScanner text) {
+    rt_scan_take(&text, rt_scan_peek(&text));
+    return rt_scan_is(rt_scan_peek(&text), "BINARY");
+}
+
 /* Takes the letters and the keyword at the beginning of the first word, if they are there. */
 static RtStatus take_keyword(Off *off) {
     static const char *const letters[] = {"ST", "C", "N"};
@@ -113,10 +119,7 @@ static RtStatus take_keyword(Off *off) {
     if (strncmp(at, "OFF", 3) != 0) return rt_scan_fail(text, word, "OFF, or it with ST, C and N before it");
     word.length = (size_t)(at + 3 - word.text);
     rt_scan_take(text, word);
-    word = rt_scan_peek(text);
-    off->binary = rt_scan_is(word, "BINARY");
     if (!off->binary) return RT_OK;
-    rt_scan_take(text, word);
     while (text->at < text->end && *text->at != '\n') text->at++;
     text->at += text->at < text->end;
     text->last = 0;
@@ -136,10 +139,10 @@ static RtStatus take_counts(const Off *off, uint64_t counts[3]) {
 }
 
 RtStatus rt_mesh_read_off(RtMeshReader *r) {
-    Off off = {.mesh = r};
+    Off off = {.mesh = r, .binary = is_binary(r->text)};
     uint64_t counts[3] = {0, 0, 0}; /* vertices, faces, edges */
-    RT_TRY(take_keyword(&off));
     if (!off.binary) RT_TRY(rt_mesh_begin_text(r));
+    RT_TRY(take_keyword(&off));
     RT_TRY(take_counts(&off, counts));
     for (int faces = 0; faces < 2; faces++) {
         for (uint64_t i = 0; i < counts[faces]; i++) {

@@ -140,8 +140,8 @@ static RtStatus read_header_line(Ply *ply, RtWord word) {
     if (rt_scan_is(word, "element")) return read_element(ply);
     if (rt_scan_is(word, "property")) return read_property(ply);
     if (!rt_scan_is(word, "comment") && !rt_scan_is(word, "obj_info"))
-        return rt_scan_fail(&ply->mesh->text, word,
-                            "format, element, property, comment, obj_info or end_header");
+        RT_TRY(rt_mesh_warn(ply->mesh, "a line of the header that is not PLY's is left out: '%.*s'",
+                            (int)(word.length < 40 ? word.length : 40), word.text));
     rt_scan_skip_line(&ply->mesh->text);
     return RT_OK;
 }
@@ -167,6 +167,7 @@ static RtStatus read_header(Ply *ply) {
     RtMeshReader *mesh = ply->mesh;
     RtWord word;
     bool has_format = false;
+    const bool returns = mesh->text.at[3] == '\r' && mesh->text.at[4] != '\n'; /* CR alone ends lines */
     RT_TRY(rt_mesh_expect(mesh, "ply"));
     for (;;) {
         RT_TRY(rt_mesh_take(mesh, true, "end_header", &word));
@@ -176,8 +177,8 @@ static RtStatus read_header(Ply *ply) {
     }
     if (!has_format) return rt_mesh_fail(mesh, "the header has no line 'format'");
     /* Elements begin right behind the line break: a binary one may look like blanks. */
-    mesh->text.at += *mesh->text.at == '\r' && mesh->text.at[1] == '\n';
-    if (*mesh->text.at != '\n' && (ply->binary || *mesh->text.at != '\r'))
+    mesh->text.at += !returns && *mesh->text.at == '\r';
+    if (*mesh->text.at != (returns ? '\r' : '\n'))
         return rt_mesh_fail(mesh, "there is no line break behind end_header");
     if (ply->binary) mesh->text.at++;
     return check_elements(ply);
@@ -279,6 +280,7 @@ static RtStatus take_list(Ply *ply, const Property *property, Kind kind) {
 
 static RtStatus take_element(Ply *ply, const Element *element) {
     double at[COORDINATES] = {0}, other;
+    RtWord word;
     ply->starts = true;
     for (uint32_t p = element->first; p < element->end; p++) {
         const Property *property = &ply->properties[p];
@@ -287,6 +289,10 @@ static RtStatus take_element(Ply *ply, const Element *element) {
         else
             RT_TRY(take_number(ply, property->type, property->use,
                                property->use == OTHER ? &other : &at[property->use]));
+    }
+    if (!ply->binary && rt_mesh_more(ply->mesh, &word)) {
+        RT_TRY(rt_mesh_warn(ply->mesh, "a line has more numbers than the header declares: they are ignored"));
+        rt_scan_skip_line(&ply->mesh->text);
     }
     if (element->kind != VERTEX) return RT_OK;
     const uint32_t normal = 1U << NX | 1U << NY | 1U << NZ;

@@ -4,6 +4,7 @@
  * itself becomes a fan, with a warning. */
 #include "core/scene/mesh.h"
 
+#include "core/base/file.h"
 #include "core/base/memory.h"
 
 #include <inttypes.h>
@@ -102,6 +103,7 @@ static bool first_sees_all(const RtMeshReader *r, RtVec3d whole) {
  * with the few near it. A corner waits in a queue while its neighbours have changed since it was tried. */
 
 enum { NONE = UINT32_MAX };
+#define FLAT 1e-6 /* of the polygon's area: a triangle that may be cut off though it is no ear */
 
 typedef struct Corner {
     double x, y;
@@ -168,12 +170,12 @@ static bool is_free(Cutter *cutter, const Corner *a, const Corner *b, const Corn
     return true;
 }
 
-/* Whether a corner and its neighbours are an ear; or, with `flat`, a triangle of either orientation that is a
- * millionth of the polygon at most. */
+/* Whether a corner and its neighbours are an ear; or, with `flat`, a triangle of either orientation and
+ * (almost) no area. */
 static bool is_ear(Cutter *cutter, uint32_t i, bool flat) {
     const Corner *at = &cutter->corners[i];
     const double area = turn_at(cutter, i);
-    if (flat) return fabs(area) <= 1e-6 * cutter->area;
+    if (flat) return fabs(area) <= FLAT * cutter->area;
     return area > 0 && is_free(cutter, &cutter->corners[at->before], at, &cutter->corners[at->after]);
 }
 
@@ -189,35 +191,46 @@ static RtStatus cut(RtMeshReader *r, Cutter *cutter, uint32_t i) {
     return add_triangle(r, ear);
 }
 
-/* Cuts ears off until three corners or no ear is left. *start becomes a corner of what is left. */
+/* Cuts off the ears among the corners that wait, and those that become ears by it. *start becomes a corner of
+ * what is left. */
 static RtStatus cut_ears(RtMeshReader *r, Cutter *cutter, uint32_t *start) {
-    uint32_t since = UINT32_MAX; /* corners left when all were last tried */
-    for (uint32_t i = 0; i < cutter->count; i++) wait_for(cutter, i);
-    while (cutter->left > 3) {
-        for (; cutter->waiting > 0 && cutter->left > 3; cutter->waiting--) {
-            const uint32_t i = cutter->queue[cutter->first];
-            cutter->first = (cutter->first + 1) % cutter->count;
-            cutter->corners[i].waits = false;
-            if (cutter->corners[i].before == NONE) continue;
-            *start = cutter->corners[i].before;
-            if (cutter->compared > cutter->most)
-                return rt_mesh_fail(r, "face %u (counted from 0), of %u corners, winds too much: split it",
-                                    r->face_count, r->corner_count);
-            if (is_ear(cutter, i, false)) RT_TRY(cut(r, cutter, i));
+    while (cutter->waiting > 0 && cutter->left > 3) {
+        const uint32_t i = cutter->queue[cutter->first];
+        cutter->first = (cutter->first + 1) % cutter->count;
+        cutter->waiting--;
+        cutter->compared++;
+        cutter->corners[i].waits = false;
+        if (cutter->corners[i].before == NONE) continue;
+        *start = cutter->corners[i].before;
+        if (cutter->compared > cutter->most)
+            return rt_mesh_fail(r, "face %u (counted from 0), of %u corners, winds too much: split it",
+                                r->face_count, r->corner_count);
+        if (is_ear(cutter, i, false)) RT_TRY(cut(r, cutter, i));
+    }
+    return RT_OK;
+}
+
+/* Cuts off what has no area. */
+static RtStatus cut_flat(RtMeshReader *r, Cutter *cutter, uint32_t *start) {
+    for (uint32_t i = *start, tries = cutter->left; tries > 0 && cutter->left > 3; tries--) {
+        const uint32_t next = cutter->corners[i].after;
+        if (is_ear(cutter, i, true)) {
+            *start = next;
+            RT_TRY(cut(r, cutter, i));
         }
-        if (cutter->left <= 3) break;
-        const bool none = cutter->left == since;
-        since = cutter->left;
-        uint32_t i = *start, flat = NONE;
-        do {
-            if (none && flat == NONE && is_ear(cutter, i, true)) flat = i;
-            if (!none) wait_for(cutter, i);
-            i = cutter->corners[i].after;
-        } while (i != *start);
-        if (none && flat == NONE) return RT_OK;
-        if (!none) continue;
-        *start = cutter->corners[flat].before;
-        RT_TRY(cut(r, cutter, flat));
+        i = next;
+    }
+    return RT_OK;
+}
+
+/* Cuts until three corners are left, or nothing can be cut: a cut frees ears that are not beside it, too. */
+static RtStatus cut_all(RtMeshReader *r, Cutter *cutter, uint32_t *start) {
+    for (uint32_t left = 0; cutter->left > 3 && cutter->left != left;) {
+        left = cutter->left;
+        for (uint32_t i = 0; i < cutter->count; i++)
+            if (cutter->corners[i].before != NONE) wait_for(cutter, i);
+        RT_TRY(cut_ears(r, cutter, start));
+        if (cutter->left == left) RT_TRY(cut_flat(r, cutter, start));
     }
     return RT_OK;
 }
@@ -277,8 +290,9 @@ static RtStatus divide(RtMeshReader *r, RtVec3d whole) {
     uint32_t first = 0;
     RT_TRY(rt_arena_check(&memory, "dividing a polygon", r->text.error));
     prepare(r, whole, &cutter);
-    RT_TRY(cut_ears(r, &cutter, &first));
-    if (cutter.left > 3) RT_TRY(warn_crossing(r));
+    RT_TRY(cut_all(r, &cutter, &first));
+    /* What is left of a polygon that does not cross itself is a triangle of its orientation. */
+    if (cutter.left > 3 || turn_at(&cutter, first) < -FLAT * cutter.area) RT_TRY(warn_crossing(r));
     for (uint32_t i = cutter.corners[first].after; cutter.corners[i].after != first;
          i = cutter.corners[i].after) {
         const RtMeshCorner triangle[3] = {r->corners[first], r->corners[i],
@@ -314,8 +328,8 @@ RtStatus rt_mesh_begin_text(RtMeshReader *r) {
     RtScanner *text = &r->text;
     const char *end = text->end;
     while (text->end > text->at && (text->end[-1] == 0 || text->end[-1] == CTRL_Z)) text->end--;
-    if (memchr(text->at, 0, (size_t)(text->end - text->at)))
-        return rt_mesh_fail(r, "there is a byte of 0 in this text: it is binary, or damaged");
+    const char *zero = memchr(text->at, 0, (size_t)(text->end - text->at));
+    if (zero) return rt_file_fail_zero(text->path, text->at, zero, text->error);
     if (text->end < end)
         RT_TRY(
             rt_mesh_warn(r, "the file ends with bytes of 0 or ^Z (%td): they are ignored", end - text->end));
