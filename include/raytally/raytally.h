@@ -83,7 +83,8 @@ typedef struct raytally_error {
 typedef struct raytally_scene raytally_scene;
 
 /** Opens a built-in scene by its spec ("balls:size=4"), or a file: YAML, NFF, or a mesh in one of the formats
- * that the program reads. Files are not trusted: all of their contents is checked. */
+ * that the program reads. Files are not trusted: all of their contents is checked. What is odd in a file, but
+ * has one sensible reading, is a warning of the scene. */
 RAYTALLY_API raytally_status raytally_scene_open(const char *spec, raytally_scene **out,
                                                  raytally_error *error);
 
@@ -117,6 +118,14 @@ RAYTALLY_API uint32_t raytally_scene_object_count(const raytally_scene *scene);
 /** The smallest box around all objects: x, y, z of its two corners. Without objects, `low` is INFINITY and
  * `high` -INFINITY. */
 RAYTALLY_API void raytally_scene_bounds(const raytally_scene *scene, float low[3], float high[3]);
+
+/** Size of the longest warning, with its terminating 0. */
+#define RAYTALLY_WARNING_CHARS 576
+
+/** Writes to `out` what the reader of the scene's files left out or guessed: warning number `i`, from 0, with
+ * its place, and how many more there are of its kind. False, and an empty string, after the last. */
+RAYTALLY_API bool raytally_scene_warning(const raytally_scene *scene, uint32_t i,
+                                         char out[RAYTALLY_WARNING_CHARS]);
 
 /** A pinhole camera. */
 typedef struct raytally_camera {

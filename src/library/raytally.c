@@ -208,6 +208,14 @@ void raytally_scene_bounds(const raytally_scene *scene, float low[3], float high
     memcpy(high, &box->hi, sizeof box->hi);
 }
 
+bool raytally_scene_warning(const raytally_scene *scene, uint32_t i, char out[RAYTALLY_WARNING_CHARS]) {
+    _Static_assert((int)RT_WARNING_TEXT == RAYTALLY_WARNING_CHARS, "the text fits");
+    const RtWarnings *warnings = &scene->scene.warnings;
+    out[0] = '\0';
+    if (i < warnings->count) rt_warning_text(&warnings->list[i], out);
+    return i < warnings->count;
+}
+
 void raytally_scene_size(const raytally_scene *scene, uint32_t *width, uint32_t *height) {
     *width = scene->scene.sampling.width;
     *height = scene->scene.sampling.height;

@@ -88,6 +88,22 @@ RT_TEST(the_camera_changes_only_while_no_accelerator_stands_over_the_scene) {
 
 /* ---- one scene for what follows ---- */
 
+RT_TEST(what_a_reader_left_out_is_a_warning_of_the_scene) {
+    static const char path[] = RT_BINARY_DIR "/test_embedding.obj";
+    raytally_scene *scene;
+    char text[RAYTALLY_WARNING_CHARS];
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    assert_true(fputs("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n", file) >= 0);
+    assert_int_equal(fclose(file), 0);
+    assert_fine(raytally_scene_open(path, &scene, error));
+    assert_true(raytally_scene_warning(scene, 0, text));
+    assert_non_null(strstr(text, "test_embedding.obj:5: face 1 (counted from 0) has 2 corners"));
+    assert_false(raytally_scene_warning(scene, 1, text));
+    assert_string_equal(text, "");
+    raytally_scene_free(scene);
+}
+
 static struct {
     raytally_scene *scene;
     raytally_accelerator *accels[3]; /* brute, grid, ideal */
