@@ -283,11 +283,11 @@ RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, u
 
 /* ---- rays that are learnt ---- */
 
-/* The seconds of `repeats` passes, each after a pass `before`. */
+/* The seconds of `repeats` passes, each after a pass `before`, if there is one. */
 static RtStatus time_after(RtPass *before, RtPass *pass, uint32_t repeats, double *seconds, RtError *error) {
     *seconds = 0;
     for (uint32_t i = 0; i < repeats; i++) {
-        RT_TRY(rt_pass_run(before, error));
+        if (before) RT_TRY(rt_pass_run(before, error));
         const double start = rt_thread_seconds();
         RT_TRY(rt_pass_run(pass, error));
         *seconds += rt_thread_seconds() - start;
@@ -295,7 +295,7 @@ static RtStatus time_after(RtPass *before, RtPass *pass, uint32_t repeats, doubl
     return RT_OK;
 }
 
-RtStatus rt_measure_learning(const RtAccel *accel, const RtRaySet *set, const RtRaySet *others,
+RtStatus rt_measure_learning(const RtAccel *accel, const RtRaySet *set, const RtRaySet *others, uint32_t most,
                              double *learnt, RtError *error) {
     enum { PAIRS = 7 };
     const double least = 2e-3; /* seconds */
@@ -305,9 +305,9 @@ RtStatus rt_measure_learning(const RtAccel *accel, const RtRaySet *set, const Rt
     RT_TRY(init_pass(&own, accel, set, 1, false, error));
     RT_TRY(init_pass(&other, accel, others, 1, false, error));
     RT_TRY(time_after(&other, &own, 1, &once, error));
-    const uint32_t repeats = rt_runner_repeats(once, least);
+    const uint32_t enough = rt_runner_repeats(once, least), repeats = enough < most ? enough : most;
     for (int i = 0; i < PAIRS; i++) {
-        RT_TRY(time_after(&own, &own, repeats, &alone, error));
+        RT_TRY(time_after(NULL, &own, repeats, &alone, error));
         RT_TRY(time_after(&other, &own, repeats, &beside, error));
         ratios[i] = beside / alone;
     }

@@ -133,8 +133,9 @@ RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, u
 
 /* How much longer a pass over `set` takes, on one thread, if passes over other rays lie between its passes:
  * *learnt gets the median of paired ratios. Much above 1 where branch predictors and caches hold what the
- * rays of `set` need, which they do not among the rays of a frame. Not for remote accelerators. */
-RtStatus rt_measure_learning(const RtAccel *accel, const RtRaySet *set, const RtRaySet *others,
+ * rays of `set` need, which they do not among the rays of a frame. At most `most` passes in a row, those of
+ * a round. Not for remote accelerators. */
+RtStatus rt_measure_learning(const RtAccel *accel, const RtRaySet *set, const RtRaySet *others, uint32_t most,
                              double *learnt, RtError *error);
 
 /* ---- files (ray_file.c) ---- */

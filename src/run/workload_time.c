@@ -199,8 +199,8 @@ static RtStatus check_learning(TimingRun *run, RtError *error) {
         cell->learnt = (double)NAN;
         if (!may_learn(&run->timed[run->place[c]]) || others->count == 0 || run->broken[run->place[c]])
             continue;
-        RT_TRY(
-            rt_measure_learning(workload->accels[c], &workload->shares[c].set, others, &cell->learnt, error));
+        RT_TRY(rt_measure_learning(workload->accels[c], &workload->shares[c].set, others,
+                                   run->timed[run->place[c]].repeats, &cell->learnt, error));
     }
     return RT_OK;
 }
