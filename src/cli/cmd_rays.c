@@ -47,6 +47,7 @@ static RtStatus record(Options *o, RtError *error) {
         return rt_fail(error, RT_BAD_INPUT, "one SCENE at a time: '%s' stands for %u", o->scene,
                        e->workload_count);
     RT_TRY(rt_workload_open_scene(&e->workloads[0], &scene, error));
+    rt_cli_tell_warnings(&scene);
     RtStatus status = rt_workload_record(e, 0, o->threads, &scene, &reference, sets, NULL, whole_rays, error);
     if (status == RT_OK) status = save(o, &sets[e->kinds[0]], error);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);

@@ -78,9 +78,8 @@ static const RtOption options[] = {
     RT_UNTIL_OPTIONS(how.workload.until, how.workload.patience),
     {"quick", 0, NULL, RT_TO_FLAG(quick), "The smaller variant that the YAML describes under `quick`"},
     {"strict", 0, NULL, RT_TO_FLAG(strict),
-     "Exit code 1 if a claim of the experiment (`expect`, `finding`, `paper`) does not hold; what is odd in "
-     "the "
-     "file of a scene is an error"},
+     "Exit code 1 if a claim of the experiment (`expect`, `finding`, `paper`) does not hold, and 2 if the "
+     "file of a scene is odd"},
     {"dry-run", 0, NULL, RT_TO_FLAG(dry), "Measure nothing: list the cells, and which of them are finished"},
     {"only", 0, "SCENE[/ACCEL[/KIND]]", RT_TO_TAKE(take_only),
      "Measure only the baseline and one scene, one accelerator on it, or one kind of rays, given by labels; "

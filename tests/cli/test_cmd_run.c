@@ -76,6 +76,28 @@ PLACE_TEST(one_that_fails_does_not_stop_the_others_and_the_worst_exit_code_count
                 "1 of 2 experiments failed, the first: b");
 }
 
+PLACE_TEST(what_is_odd_in_a_mesh_is_said_and_kept_by_every_command_and_an_error_if_strict) {
+    static const char *const commands[] = {
+        "info odd.obj",
+        "convert odd.obj odd.ply -f",
+        "render odd.obj --size 8x8 -o odd.png",
+        "rays odd.obj --rays random -o odd.npy",
+        "verify odd.obj --accel bvh --rays 9",
+        "trace odd.obj --pixel 1,1",
+        "bench odd.obj --accel bvh --rays random --rounds 2 --milliseconds 0"};
+    char strict[200];
+    write_in(place, "odd.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n");
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        snprintf(strict, sizeof strict, "%s --strict", commands[i]);
+        assert_ends(place, commands[i], 0, "warning: odd.obj:5: face 1 (counted from 0) has 2 corners");
+        assert_ends(place, strict, 2, "odd.obj:5: face 1 (counted from 0) has 2 corners");
+    }
+    change(place, "a.yaml", "random:n=60", "odd.obj");
+    assert_ends(place, "run a.yaml --threads 1", 0, "odd.obj:5: face 1 (counted from 0) has 2 corners");
+    assert_in_file(place, "results/a/manifest.json", "odd.obj:5: face 1 (counted from 0) has 2 corners");
+    assert_ends(place, "run a.yaml --threads 1 --strict --force", 2, "odd.obj:5: face 1");
+}
+
 PLACE_TEST(all_are_parsed_before_the_first_is_measured) {
     change(place, "c.yaml", "limit: 50", "limmit: 50");
     assert_ends(place, "run a.yaml b.yaml c.yaml", 2, "c.yaml:7:1: unknown key 'limmit'");
