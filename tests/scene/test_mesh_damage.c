@@ -295,29 +295,33 @@ RT_TEST(a_damaged_gltf_is_refused_with_what_is_wrong) {
     static const Damaged cases[] = {
         {"", "1:", "'[' or '{' expected"},
         {"{\"asset\":{\"version\":\"1.0\"}}", "", "expected glTF 2.0"},
-        {ASSET "}", "", "the file names scenes[0], but there are 0"},
-        {ASSET ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]}", "",
-         "requires the extension 'KHR_draco_mesh_compression'"},
-        {ASSET ",\"buffers\":[{\"byteLength\":1,\"uri\":\"http://x.org/a\"}]}", "",
-         "'http://x.org/a' is not a file"},
-        {ASSET ",\"buffers\":[{\"byteLength\":1}]}", "", "expected uri"},
+        {ASSET "}", "", "expected scenes, or nodes"},
+        {ASSET ",\"scene\":0}", "", "expected the index of one of the 0 scenes"},
+        {ASSET ",\"nodes\":[]}", "", "no triangle"},
     };
     static const struct {
         const char *was, *is, *says;
     } changes[] = {
         {"AAECAAID", "AAECAAIE", "names vertex 4, but there are 4"},
+        {"data:;base64,AAECAAID", "no%20file", RT_TEST_FOLDER "/no file: cannot be opened"},
         {"AAECAAID", "AAECAA", "buffers[1]: it declares 6 bytes, but has 4"},
         {"AAECAAID", "AAEC*AID", "buffers[1]: its base64 is damaged"},
-        {"{\"mesh\":0", "{\"mesh\":1", "a node names meshes[1]"},
-        {"{\"mesh\":0", "{\"children\":[0]", "nodes[0]: it is named twice"},
-        {"{\"mesh\":0", "{\"children\":[9]", "a node names nodes[9]"},
+        {"data:;base64,AAECAAID", "data:,AAECAAID", "buffers[1]: its data is not in base64"},
+        {"data:;base64,AAECAAID", "http://x.org/a", "buffers[1]: its uri 'http://x.org/a' is not a file"},
+        {",\"uri\":\"data:;base64,AAECAAID\"", "", "buffers[1]: expected uri"},
+        {"{\"mesh\":0", "{\"mesh\":1", "nodes[0]: expected the index of one of the 1 meshes"},
+        {"{\"mesh\":0", "{\"mesh\":0.5", "nodes[0]: expected the index of one of the 1 meshes"},
+        {"{\"mesh\":0", "{\"children\":[0]", "scenes[0]: its nodes[0] is also below another node"},
+        {"{\"mesh\":0}", "{\"children\":[1]},{\"children\":[1]}",
+         "it is more than 256 levels deep, or below itself"},
+        {"{\"mesh\":0", "{\"children\":[9]", "nodes[0]: expected the index of one of the 1 nodes"},
         {"{\"mesh\":0", "{\"matrix\":[1,2]", "a list of 16 numbers"},
         {"{\"mesh\":0", "{\"mesh\":0,\"scale\":[1e300,1,1]", "not a finite"},
         {"\"indices\"", "\"mode\":7,\"indices\"", "expected mode"},
         {"\"indices\"", "\"mode\":1,\"indices\"", "no triangle"},
-        {"\"VEC3\"", "\"VEC3\",\"sparse\":{}", "accessors[0]: it is sparse"},
+        {"\"VEC3\"", "\"VEC3\",\"sparse\":{}", "accessors[0]: expected count"},
         {"\"VEC3\"", "\"VEC3\",\"byteOffset\":1", "do not fit into the 48 bytes"},
-        {"5121", "4294972417", "accessors[1]: expected the type SCALAR"}, /* 2^32 more */
+        {"5121", "4294972417", "accessors[1]: expected componentType"}, /* 2^32 more */
         {"\"count\":6", "\"count\":9", "its 9 elements do not fit into the 6 bytes"},
         {"\"count\":6", "\"count\":4000000000", "do not fit"},
         {"\"count\":6", "\"count\":4611686018427387904", "expected count"},
@@ -328,12 +332,9 @@ RT_TEST(a_damaged_gltf_is_refused_with_what_is_wrong) {
         {"\"byteLength\":48,\"uri\"", "\"byteLength\":49,\"uri\"",
          "buffers[0]: it declares 49 bytes, but has 48"},
     };
-    static const char gltf[] = GLTF,
-                      missing[] = ASSET ",\"buffers\":[{\"byteLength\":1,\"uri\":\"no%20file\"}]}";
+    static const char gltf[] = GLTF;
     RtScene scene;
     ASSERT_REFUSED("gltf", cases);
-    assert_bad_input_at(load_bytes("gltf", missing, strlen(missing), &scene, error),
-                        RT_TEST_FOLDER "/no file: ", "No such file");
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
         char text[MOST_BYTES];
         const char *at = strstr(gltf, changes[i].was);
@@ -398,7 +399,7 @@ RT_TEST(the_sizes_that_a_binary_file_declares_must_be_its_own) {
     } cases[] = {
         {GLB, 4, "this is glTF 3: only 2 can be read"},
         {GLB, 8, "bytes, but the file has"},
-        {GLB, 12, "expected a chunk BIN"}, /* the length of the JSON */
+        {GLB, 12, "a chunk declares"}, /* the length of the JSON */
         {BINARY_STL, 80, "the header declares 3 triangles, which take 234 bytes, but the file has 184"},
         {BINARY_PLY, 51, "there is no triangle"}, /* the number of vertices */
         {GLB, 0, "declares"},
