@@ -120,11 +120,15 @@ void rt_cli_take_strict(void *options, const char *text, struct argp_state *stat
     rt_warnings_refuse();
 }
 
-RtStatus rt_cli_open_scene(const char *spec, RtScene *scene, RtError *error) {
+void rt_cli_tell_warnings(const RtScene *scene) {
     char text[RT_WARNING_TEXT];
-    RT_TRY(rt_scene_open(spec, scene, error));
     for (uint32_t i = 0; i < scene->warnings.count; i++)
         fprintf(stderr, "raytally: warning: %s\n", rt_warning_text(&scene->warnings.list[i], text));
+}
+
+RtStatus rt_cli_open_scene(const char *spec, RtScene *scene, RtError *error) {
+    RT_TRY(rt_scene_open(spec, scene, error));
+    rt_cli_tell_warnings(scene);
     return RT_OK;
 }
 

@@ -161,7 +161,9 @@ RT_COMMANDS(RT_COMMAND)
  * json_pack would only return NULL. */
 RtStatus rt_cli_check_json_name(const char *name, RtError *error);
 
-/* rt_scene_open; prints the warnings of its files to stderr. */
+/* Prints the warnings of the scene's files to stderr. */
+void rt_cli_tell_warnings(const RtScene *scene);
+/* rt_scene_open, which tells them. */
 RtStatus rt_cli_open_scene(const char *spec, RtScene *scene, RtError *error);
 
 /* Prints one JSON document to stdout, indented, and takes the reference. */

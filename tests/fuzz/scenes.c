@@ -85,7 +85,7 @@ void fuzz_scene(const Input *input) {
     RtAccel *brute;
     RtRay rays[2 * EACH];
     RtError error = {RT_OK, ""};
-    if (!fuzz_accepted(rt_scene_load(input->path, open_named, &scene, &error), &error)) return;
+    if (!fuzz_accepted(rt_scene_load(input->path, open_named, NULL, &scene, &error), &error)) return;
     if (scene.geometry.object_count <= MOST_OBJECTS &&
         rt_scene_sample(&scene, SAMPLES, SAMPLES, 1, false, &error) == RT_OK) {
         check_saving(&scene);

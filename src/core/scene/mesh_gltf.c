@@ -486,7 +486,7 @@ static RtStatus add_vertices(Gltf *g, const json_t *primitive, const Pose *pose,
     if (normal) RT_TRY(morph(g, primitive, pose->weights, "NORMAL", memory, &normals));
     if (pose->skin) RT_TRY(apply_skin(g, attributes, pose->skin, memory, &positions, &normals));
     for (uint32_t i = 0; i < positions.count; i++)
-        RT_TRY(rt_mesh_add_vertex(g->mesh, rt_narrow(value_at(&positions, i))));
+        RT_TRY(rt_mesh_add_vertex(g->mesh, value_at(&positions, i)));
     for (uint32_t i = 0; i < normals.count; i++)
         RT_TRY(rt_mesh_add_normal(g->mesh, rt_narrow(value_at(&normals, i))));
     *count = positions.count;
@@ -711,6 +711,9 @@ static RtStatus read_document(Gltf *g, const char *text, size_t size) {
 
 static RtStatus read_all(RtMeshReader *r, const char *text, size_t size, Buffer chunk) {
     Gltf g = {.mesh = r, .chunk = chunk, .size = size, .outer = r->transform};
+    const RtVec3d origin = rt_transform_pointd(&r->transform, rt_scaled(r->offset, -1));
+    for (int a = 0; a < 3; a++) g.outer.m[a][3] = origin.at[a];
+    r->offset = rt_vec3d(0, 0, 0); /* of the scene: it is subtracted behind the transforms of the nodes */
     RtStatus status = read_document(&g, text, size);
     for (size_t i = 0; i < g.buffer_count; i++) {
         if (g.buffers[i].data != chunk.data) rt_free(g.buffers[i].data);

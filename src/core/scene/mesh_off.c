@@ -29,8 +29,9 @@ static RtStatus take_count(RtMeshReader *r, uint64_t *out) {
 
 static RtStatus read_vertex(const Off *off) {
     RtMeshReader *r = off->mesh;
-    RtVec3 vertex, normal;
-    RT_TRY(rt_mesh_take_vector(r, true, "the x y z of a vertex", &vertex));
+    RtVec3d vertex;
+    RtVec3 normal;
+    RT_TRY(rt_mesh_take_vertex(r, true, &vertex));
     if (off->parts & NORMAL) {
         RT_TRY(rt_mesh_take_normal(r, &normal));
         RT_TRY(rt_mesh_add_normal(r, normal));
@@ -74,7 +75,7 @@ static RtStatus read_binary_vertex(const Off *off) {
     RT_TRY(take_words(off->mesh, off->parts & NORMAL ? 6 : 3, parts));
     RT_TRY(take_words(off->mesh, (off->parts & COLOUR ? 4 : 0) + (off->parts & TEXTURE ? 2 : 0), unused));
     if (off->parts & NORMAL) RT_TRY(rt_mesh_add_normal(off->mesh, parts[1]));
-    return rt_mesh_add_vertex(off->mesh, parts[0]);
+    return rt_mesh_add_vertex(off->mesh, rt_widen(parts[0]));
 }
 
 static RtStatus read_binary_face(const Off *off) {

@@ -220,10 +220,11 @@ static RtStatus take_text(Ply *ply, Type type, Use use, double *out) {
     float value = NAN;
     RT_TRY(rt_mesh_take(ply->mesh, ply->starts, "a number", &word));
     ply->starts = false;
-    if (use != INDICES && use > Z) {
+    if (use <= Z) return rt_mesh_coordinate(ply->mesh, word, (int)use, out);
+    if (use != INDICES) {
         if (!rt_scan_float(word, &value))
             RT_TRY(rt_mesh_warn(ply->mesh, "a property that is not used, or a normal, is no finite number"));
-    } else if (use != INDICES || type == FLOAT32 || type == FLOAT64 || memchr(word.text, '.', word.length)) {
+    } else if (type == FLOAT32 || type == FLOAT64 || memchr(word.text, '.', word.length)) {
         RT_TRY(rt_mesh_float(ply->mesh, word, &value));
     } else {
         int64_t integer = 0;
@@ -292,7 +293,7 @@ static RtStatus take_element(Ply *ply, const Element *element) {
     const uint32_t normal = 1U << NX | 1U << NY | 1U << NZ;
     if ((element->uses & normal) == normal)
         RT_TRY(rt_mesh_add_normal(ply->mesh, rt_narrow(rt_vec3d(at[NX], at[NY], at[NZ]))));
-    return rt_mesh_add_vertex(ply->mesh, rt_narrow(rt_vec3d(at[X], at[Y], at[Z])));
+    return rt_mesh_add_vertex(ply->mesh, rt_vec3d(at[X], at[Y], at[Z]));
 }
 
 static RtStatus read_elements(Ply *ply, const Element *element) {
