@@ -135,6 +135,8 @@ static void assert_same_picture(const RtScene *a, const RtScene *b) {
     uint32_t hits = 0;
     assert_int_equal(a->geometry.object_count, b->geometry.object_count);
     assert_true(farthest(a->lights[0].position, b->lights[0].position) < 1e-5);
+    assert_memory_equal(&a->lights[0].intensity, &b->lights[0].intensity, sizeof(RtVec3));
+    assert_memory_equal(a->geometry.vertex_normals, b->geometry.vertex_normals, sizeof(RtVertexNormals));
     for (uint32_t i = 0; i < a->geometry.object_count; i++) {
         assert_true(farthest(a->geometry.boxes[i].lo, b->geometry.boxes[i].lo) < 1e-5);
         assert_true(farthest(a->geometry.boxes[i].hi, b->geometry.boxes[i].hi) < 1e-5);
