@@ -230,6 +230,18 @@ RT_TEST(the_centre_of_a_scene_is_rounded_to_few_bits) {
     rt_scene_clear(&scene);
 }
 
+RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {
+    RtScene scene;
+    RtVec3d offset = far_away;
+    write_moved(PATH("yaml"), whole, far_away, ", ");
+    assert_fails_cleanly(rt_scene_load(PATH("yaml"), rt_builtin_open, &offset, &scene, error),
+                         rt_scene_clear(&scene));
+    write_moved(PATH("obj"), meshes[0].text, far_away, " ");
+    assert_fails_cleanly(
+        (offset.x = NAN, rt_scene_load(PATH("obj"), rt_builtin_open, &offset, &scene, error)),
+        rt_scene_clear(&scene));
+}
+
 /* ---- the warning ---- */
 
 static uint32_t warnings_of(const char *extension, const char *text, RtVec3d by) {
