@@ -21,6 +21,7 @@
 #include "core/text/scanner.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The extension of format `i`, without the dot; NULL after the last. All can be read, and the first can be
@@ -116,8 +117,11 @@ RtStatus rt_mesh_expect(RtMeshReader *r, const char *text);
 RtStatus rt_mesh_float(const RtMeshReader *r, RtWord word, float *out);
 RtStatus rt_mesh_integer(const RtMeshReader *r, RtWord word, int64_t *out);
 
-/* The coordinate of a vertex in a word: the float32 nearest to it, or the double if it has an offset. */
-RtStatus rt_mesh_coordinate(const RtMeshReader *r, RtWord word, int axis, double *out);
+/* The coordinate of a vertex whose word is `text`: `nearest`, the float32, or if it has an offset the double.
+ */
+static inline double rt_mesh_coordinate(const RtMeshReader *r, const char *text, int axis, float nearest) {
+    return r->offset.at[axis] == 0 ? (double)nearest : strtod(text, NULL);
+}
 
 /* Takes the three coordinates of a vertex from a line, the first as rt_mesh_take. */
 RtStatus rt_mesh_take_vertex(RtMeshReader *r, bool first, RtVec3d *out);

@@ -220,11 +220,10 @@ static RtStatus take_text(Ply *ply, Type type, Use use, double *out) {
     float value = NAN;
     RT_TRY(rt_mesh_take(ply->mesh, ply->starts, "a number", &word));
     ply->starts = false;
-    if (use <= Z) return rt_mesh_coordinate(ply->mesh, word, (int)use, out);
-    if (use != INDICES) {
+    if (use != INDICES && use > Z) {
         if (!rt_scan_float(word, &value))
             RT_TRY(rt_mesh_warn(ply->mesh, "a property that is not used, or a normal, is no finite number"));
-    } else if (type == FLOAT32 || type == FLOAT64 || memchr(word.text, '.', word.length)) {
+    } else if (use != INDICES || type == FLOAT32 || type == FLOAT64 || memchr(word.text, '.', word.length)) {
         RT_TRY(rt_mesh_float(ply->mesh, word, &value));
     } else {
         int64_t integer = 0;
@@ -232,7 +231,7 @@ static RtStatus take_text(Ply *ply, Type type, Use use, double *out) {
         *out = (double)integer;
         return RT_OK;
     }
-    *out = (double)value;
+    *out = use > Z ? (double)value : rt_mesh_coordinate(ply->mesh, word.text, (int)use, value);
     return RT_OK;
 }
 

@@ -9,7 +9,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 RtStatus rt_mesh_fail_short(const RtMeshReader *r, uint64_t count, uint64_t declared, const char *things) {
@@ -370,18 +369,13 @@ RtStatus rt_mesh_integer(const RtMeshReader *r, RtWord word, int64_t *out) {
     return RT_OK;
 }
 
-RtStatus rt_mesh_coordinate(const RtMeshReader *r, RtWord word, int axis, double *out) {
-    float narrow = 0;
-    RT_TRY(rt_mesh_float(r, word, &narrow));
-    *out = r->offset.at[axis] == 0 ? (double)narrow : strtod(word.text, NULL);
-    return RT_OK;
-}
-
 RtStatus rt_mesh_take_vertex(RtMeshReader *r, bool first, RtVec3d *out) {
     RtWord word;
+    float nearest = 0;
     for (int a = 0; a < 3; a++) {
         RT_TRY(rt_mesh_take(r, first && a == 0, "the x y z of a vertex", &word));
-        RT_TRY(rt_mesh_coordinate(r, word, a, &out->at[a]));
+        RT_TRY(rt_mesh_float(r, word, &nearest));
+        out->at[a] = rt_mesh_coordinate(r, word.text, a, nearest);
     }
     return RT_OK;
 }
