@@ -122,5 +122,6 @@ RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error) {
 /* A spec that is neither a file nor a built-in is rejected with the list of built-ins. */
 RtStatus rt_scene_open(const char *spec, RtScene *scene, RtError *error) {
     bool builtin = rt_builtin_find(spec) || !rt_scene_is_file(spec);
-    return builtin ? rt_builtin_open(spec, scene, error) : rt_scene_load(spec, rt_builtin_open, scene, error);
+    return builtin ? rt_builtin_open(spec, scene, error)
+                   : rt_scene_load(spec, rt_builtin_open, NULL, scene, error);
 }

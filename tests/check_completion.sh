@@ -35,6 +35,7 @@ offers_only() {
 offers 'raytally ' accels bench render
 offers_only 'raytally be' bench
 offers_only 'raytally bench --count' --count-only --counts
+offers_only 'raytally convert --r' --recentre
 offers_only 'raytally bench --worker' # hidden
 offers 'raytally bench balls --accel ' brute bvh grid octree all
 offers_only 'raytally bench balls -a gr' grid

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally convert, as a user runs it: what it keeps, what it refuses. */
 #include "command_testing.h"
-#include "scene_testing.h"
+#include "recentre_testing.h"
 
 #include "core/base/file.h"
+#include "measure/measure.h"
 
 #define OUT RT_BINARY_DIR "/test_cmd_convert"
 
@@ -31,6 +32,58 @@ RT_TEST(convert_refuses_and_leaves_nothing_behind) {
     assert_ok(rt_file_write(OUT ".off", cut, strlen(cut), error));
     assert_int_equal(convert(OUT ".off " OUT ".ply"), 2);
     assert_not_written(OUT ".ply");
+}
+
+/* Runs convert, which says how far it moved. */
+static void assert_moves(const char *arguments, const char *says) {
+    assert_said(raytally_to(">" OUT ".txt 2>&1", "convert --force %s", arguments), 0, OUT ".txt", says);
+}
+
+/* Vertical rays on two triangles in a map, whose coordinates float32 happens to hold; the ground is 9 high.
+ */
+RT_TEST(rays_that_move_with_their_scene_hit_the_same) {
+    static const RtVec3d corner = {{500000, 5400000, 9}};
+    write_moved(OUT ".obj", "v <0 0 0>\nv <8 0 0>\nv <8 8 0>\nv <0 8 1>\nf 1 2 3\nf 1 3 4\n", corner, " ");
+    RtRaySet rays, moved;
+    assert_ok(rt_rayset_init(&rays, RT_RAY_RANDOM, 100, error));
+    for (uint32_t i = 0; i < 100; i++)
+        rays.rays[i] = (RtRay){.org = {{500000.5f + (float)(i % 10), 5400001 + (float)(i / 10), 64}},
+                               .dir = {{0, 0, -1}},
+                               .tmax = INFINITY};
+    assert_ok(rt_rays_save(&rays, OUT ".npy", error));
+    assert_moves("--recentre " OUT ".obj " OUT ".ply", "moved by -500004 -5400004 -10;");
+    assert_moves(OUT ".npy " OUT ".moved.npy --recentre=500004,5400004,10", "");
+    assert_ok(rt_rays_load(OUT ".moved.npy", RT_RAY_RANDOM, &moved, error));
+    OWNED_SCENE before = open_scene(OUT ".obj"), after = open_scene(OUT ".ply");
+    uint32_t hits = 0;
+    for (uint32_t i = 0; i < 100; i++) {
+        float t, u;
+        const uint32_t id = first_hit(&before, &rays.rays[i], &t);
+        assert_int_equal(first_hit(&after, &moved.rays[i], &u), id);
+        assert_true(t == u);
+        hits += id != RT_NO_OBJECT;
+    }
+    assert_int_equal(hits, 64);
+    rt_rayset_clear(&rays);
+    rt_rayset_clear(&moved);
+}
+
+/* What --strict refuses is what the result no longer has. */
+RT_TEST(convert_recentres_what_is_refused_far_away) {
+    write_moved(OUT ".obj", "v <0 0 0>\nv <8 0 0>\nv <0 8 0>\nf 1 2 3\n", far_away, " ");
+    assert_int_equal(convert("--force --strict " OUT ".obj " OUT ".ply"), 2);
+    assert_moves("--strict --recentre " OUT ".obj " OUT ".ply", "with --recentre=500004,5400004,100\n");
+    assert_moves("--strict --recentre=500000,5.4e6,-0.5 " OUT ".obj " OUT ".ply", "-500000 -5400000 0.5;");
+    static const char *const refused[] = {"--recentre=1,2", "--recentre=1,2,3,4", "--recentre=1,2,nan",
+                                          "--recentre=1,2,1e30", "--recentre="};
+    for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
+        char arguments[256];
+        snprintf(arguments, sizeof arguments, "%s --force " OUT ".obj " OUT ".ply", refused[i]);
+        assert_int_equal(convert(arguments), 2);
+    }
+    assert_int_equal(convert("--force --recentre " OUT ".npy " OUT ".moved.npy"),
+                     2);                                                            /* its scene is unknown */
+    assert_int_equal(convert("--recentre=1,2,3 " OUT ".npy " OUT ".moved.npy"), 2); /* it exists */
 }
 
 RT_TESTS(cmd_convert, NULL, NULL)

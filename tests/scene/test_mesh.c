@@ -60,7 +60,7 @@ RT_TEST(a_mesh_that_is_saved_keeps_each_bit) {
                                         RT_BINARY_DIR "/test_mesh.glb"};
     OWNED_SCENE scene = open_scene("random:n=300,shape=triangle");
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        assert_ok(rt_scene_save(&scene, names[i], true, error));
+        assert_ok(rt_scene_save(&scene, names[i], error));
         OWNED_SCENE again = open_scene(names[i]);
         assert_int_equal(again.geometry.triangle_count, 300);
         assert_int_equal(again.geometry.vertex_normal_count, 0);
@@ -122,7 +122,7 @@ RT_TEST(every_text_format_reads_the_float_nearest_to_a_number) {
 RT_TEST(a_scene_with_other_shapes_is_not_written_as_a_mesh) {
 #define REFUSED RT_BINARY_DIR "/test_mesh_refused.ply"
     OWNED_SCENE scene = open_scene("balls:size=1");
-    assert_bad_input(rt_scene_save(&scene, REFUSED, true, error), "sphere: 10");
+    assert_bad_input(rt_scene_save(&scene, REFUSED, error), "sphere: 10");
     assert_not_written(REFUSED);
 }
 
@@ -283,7 +283,7 @@ RT_TEST(normals_come_back_from_ply_and_glb) {
     OWNED_SCENE scene =
         scene_of(OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 1 0 0\nf 1//1 2//2 3//1\nf 1 3 2\n");
     for (size_t i = 0; i < 2; i++) {
-        assert_ok(rt_scene_save(&scene, names[i], true, error));
+        assert_ok(rt_scene_save(&scene, names[i], error));
         OWNED_SCENE again = open_scene(names[i]);
         assert_int_equal(again.geometry.vertex_normal_count, 2);
         assert_memory_equal(again.geometry.vertex_normals, scene.geometry.vertex_normals,
@@ -309,7 +309,7 @@ RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {
     write_text(RT_BINARY_DIR "/test_mesh_scene.gltf", two_nodes);
     assert_failed_allocations_are_reported(RT_BINARY_DIR "/test_mesh_scene.gltf");
     OWNED_SCENE scene = open_scene(OBJ_NAME);
-    assert_fails_cleanly(rt_scene_save(&scene, RT_BINARY_DIR "/test_mesh.ply", true, error), (void)0);
+    assert_fails_cleanly(rt_scene_save(&scene, RT_BINARY_DIR "/test_mesh.ply", error), (void)0);
     OWNED_SCENE again = open_scene(RT_BINARY_DIR "/test_mesh.ply");
     assert_int_equal(again.geometry.vertex_normal_count, 1);
 }

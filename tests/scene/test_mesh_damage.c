@@ -86,7 +86,7 @@ static int make_meshes(void **state) {
         if (i < TEXTS)
             write_text(path_of(extensions[i]), texts[i]);
         else
-            assert_ok(rt_scene_save(&square, path_of(extensions[i]), true, error));
+            assert_ok(rt_scene_save(&square, path_of(extensions[i]), error));
         assert_ok(rt_file_read(path_of(extensions[i]), MOST_BYTES, &bytes, &whole[i].size, error));
         memcpy(whole[i].bytes, bytes, whole[i].size);
         whole[i].extension = extensions[i];

@@ -66,7 +66,7 @@ RT_TEST(signs_of_radii_and_line_ends_do_not_matter) {
 
 RT_TEST(what_is_written_reads_back_bit_for_bit) {
     OWNED_SCENE scene = open_scene("random:n=400,shape=mixed");
-    assert_ok(rt_scene_save(&scene, FILE_NAME, true, error));
+    assert_ok(rt_scene_save(&scene, FILE_NAME, error));
     OWNED_SCENE again = open_scene(FILE_NAME);
     const RtGeometry *a = &scene.geometry, *b = &again.geometry;
     assert_int_equal(a->object_count, b->object_count);
@@ -83,17 +83,16 @@ RT_TEST(what_is_written_reads_back_bit_for_bit) {
 RT_TEST(a_triangle_without_area_survives_being_written) {
     const RtVec3 point[3] = {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
     OWNED_SCENE_OF(scene, triangle, point, NULL);
-    assert_ok(rt_scene_save(&scene, FILE_NAME, true, error));
+    assert_ok(rt_scene_save(&scene, FILE_NAME, error));
     OWNED_SCENE again = open_scene(FILE_NAME);
     assert_memory_equal(again.geometry.triangles[0].v, point, sizeof point);
 }
 
-RT_TEST(an_existing_file_is_kept_unless_it_may_be_overwritten) {
+RT_TEST(a_file_that_cannot_be_written_leaves_the_others) {
     RtError problem;
     OWNED_SCENE scene = scene_of(FILE_NAME, "s 0 0 0 1\n");
-    assert_bad_input(rt_scene_save(&scene, FILE_NAME, false, error), "already exists");
-    assert_bad_input(rt_scene_save(&scene, RT_BINARY_DIR "/x.nfff", true, error), "did you mean '.nff'?");
-    assert_int_not_equal(rt_scene_save(&scene, RT_BINARY_DIR "/no/such/folder/x.nff", true, &problem), RT_OK);
+    assert_bad_input(rt_scene_save(&scene, RT_BINARY_DIR "/x.nfff", error), "did you mean '.nff'?");
+    assert_int_not_equal(rt_scene_save(&scene, RT_BINARY_DIR "/no/such/folder/x.nff", &problem), RT_OK);
     OWNED_SCENE again = open_scene(FILE_NAME);
     assert_int_equal(again.geometry.object_count, 1);
 }

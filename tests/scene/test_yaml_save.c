@@ -7,7 +7,7 @@
 static RtScene saved_and_loaded(const RtScene *scene) {
     static const char *const path = RT_TEST_FOLDER "/again.yaml";
     RtScene again;
-    assert_ok(rt_scene_save(scene, path, true, error));
+    assert_ok(rt_scene_save(scene, path, error));
     assert_ok(load(path, &again, error));
     return again;
 }

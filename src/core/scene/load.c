@@ -7,6 +7,7 @@
 #include "core/scene/nff.h"
 
 #include <dirent.h>
+#include <float.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -56,7 +57,25 @@ bool rt_scene_is_file(const char *spec) {
     return rt_file_exists(spec) || strchr(spec, '/') || strchr(spec, '.');
 }
 
-RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
+/* Warns if most objects are small beside the coordinates, because these are far from the origin. */
+static RtStatus warn_far(RtScene *scene, const char *path, RtError *error) {
+    enum { FAR = 10, SMALL = 10000 };
+    const RtGeometry *g = &scene->geometry;
+    const double largest = rt_box_largest_coordinate(g->box);
+    uint32_t small = 0;
+    if (largest < FAR * rt_box_longest_side(g->box)) return RT_OK;
+    for (uint32_t i = 0; i < g->object_count; i++)
+        small += rt_box_longest_side(g->boxes[i]) * SMALL < largest;
+    if (small <= g->object_count / 2) return RT_OK;
+    return rt_warn_at(&scene->warnings, path, 0, error,
+                      "%u of %u objects are smaller than 10^-4 of their coordinates, of up to %.9g, where "
+                      "float32 has steps of %g: `raytally convert --recentre` moves the scene before it is "
+                      "rounded",
+                      small, g->object_count, largest, largest - (double)nextafterf((float)largest, 0));
+}
+
+static RtStatus load(const char *path, RtSceneOpener *open_named, RtVec3d offset, bool warns, RtScene *scene,
+                     RtError *error) {
     *scene = (RtScene){0};
     struct stat found;
     bool exists = stat(path, &found) == 0;
@@ -66,22 +85,42 @@ RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtScene *sce
     RT_TRY(rt_find_format(path, read_extension, "read", &format, error));
     if (!exists) return rt_file_is_dead_link(path, error) ? RT_BAD_INPUT : fail_missing(path, error);
     rt_scene_init(scene);
+    scene->offset = offset;
     snprintf(scene->name, sizeof scene->name, "%.*s", (int)sizeof scene->name - 1, path);
     RtStatus status = format < FORMAT_COUNT ? formats[format].load(path, open_named, scene, error)
                                             : rt_mesh_load(path, scene, error);
     if (status == RT_OK && scene->geometry.object_count == 0)
         status = rt_fail_at(error, path, 0, 0, "the scene is empty: it needs at least one object");
     if (status == RT_OK) status = rt_scene_finish(scene, error);
+    if (status == RT_OK && warns) status = warn_far(scene, path, error);
     if (status != RT_OK) rt_scene_clear(scene);
     return status;
 }
 
-RtStatus rt_scene_save(const RtScene *scene, const char *path, bool overwrite, RtError *error) {
+/* The centre, in steps of an eighth to a quarter of the longest side. */
+static RtVec3d find_center(RtBox box) {
+    int exponent;
+    RtVec3d center = rt_widen(rt_box_center(box));
+    frexp(fmax(rt_box_longest_side(box), FLT_MIN), &exponent);
+    const double step = ldexp(1, exponent - 3);
+    for (int a = 0; a < 3; a++) center.at[a] = step * rint(center.at[a] / step) + 0.0; /* no -0 */
+    return center;
+}
+
+RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtVec3d *offset, RtScene *scene,
+                       RtError *error) {
+    RtVec3d none = {{0, 0, 0}};
+    if (offset && isnan(offset->x)) {
+        RT_TRY(load(path, open_named, none, false, scene, error));
+        *offset = find_center(scene->geometry.box);
+        rt_scene_clear(scene);
+    }
+    return load(path, open_named, offset ? *offset : none, true, scene, error);
+}
+
+RtStatus rt_scene_save(const RtScene *scene, const char *path, RtError *error) {
     size_t format;
     RT_TRY(rt_find_format(path, written_extension, "written", &format, error));
-    if (!overwrite && rt_file_exists(path))
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s already exists: remove it, choose another name, or convert with --force", path);
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));
     RtStatus status = format < FORMAT_COUNT ? formats[format].save(scene, output.file, error)

@@ -11,13 +11,16 @@
 bool rt_scene_is_file(const char *spec);
 
 /* Reads the file at `path`, in the format of its extension (.yaml .yml .nff, or those of mesh.h).
- * `open_named` opens scenes that a YAML file refers to by name. On success *scene is finished, has at least
- * one object, and belongs to the caller (rt_scene_clear); on failure it is empty. */
-RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error);
+ * `open_named` opens scenes that a YAML file refers to by name. Subtracts *offset (NULL: none) from
+ * everything that has a place (RtScene); if it is NaN, it becomes the centre of the scene, rounded to few
+ * bits, for which the file is read twice. On success *scene is finished, has at least one object, and belongs
+ * to the caller (rt_scene_clear); on failure it is empty. */
+RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtVec3d *offset, RtScene *scene,
+                       RtError *error);
 
-/* Writes `scene` in the format of the extension of `path`, through a temporary file. `path` must not exist
- * unless `overwrite`. Fails if the format cannot represent an object of the scene. */
-RtStatus rt_scene_save(const RtScene *scene, const char *path, bool overwrite, RtError *error);
+/* Writes `scene` in the format of the extension of `path`, through a temporary file. Fails if the format
+ * cannot represent an object of the scene. */
+RtStatus rt_scene_save(const RtScene *scene, const char *path, RtError *error);
 
 /* ---- raytally's own format (docs/scenes.md): yaml_read.c and yaml_write.c ---- */
 

@@ -55,6 +55,20 @@ static RtStatus check_head(const Format *format, RtMeshReader *r) {
     return format->check ? format->check(r, &head) : RT_OK;
 }
 
+/* Has `offset` subtracted behind the transform: what the transform takes there is subtracted from the
+ * vertices, so that little is left, and both roundings to float32 lose little. */
+static void subtract(RtMeshReader *r, RtVec3d offset) {
+    if (rt_dotd(offset, offset) == 0) return;
+    const RtVec3d x = rt_transform_column(&r->transform, 0), y = rt_transform_column(&r->transform, 1),
+                  z = rt_transform_column(&r->transform, 2), yz = rt_crossd(y, z),
+                  way = rt_subd(offset, rt_transform_column(&r->transform, 3));
+    r->offset =
+        rt_scaled(rt_vec3d(rt_dotd(yz, way), rt_dotd(rt_crossd(z, x), way), rt_dotd(rt_crossd(x, y), way)),
+                  1 / rt_dotd(x, yz));
+    const RtVec3d left = rt_subd(rt_transform_pointd(&r->transform, r->offset), offset);
+    for (int a = 0; a < 3; a++) r->transform.m[a][3] = left.at[a];
+}
+
 RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
                         RtError *error) {
     RtError own;
@@ -66,6 +80,7 @@ RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, con
                       .scene = scene,
                       .material = material,
                       .transform = transform ? *transform : rt_transform_identity()};
+    subtract(&r, scene->offset);
     RT_TRY(check_head(format, &r));
     RT_TRY(rt_file_read(path, RT_MESH_MAX_BYTES, &data, &size, error));
     rt_scan_begin(&r.text, data, size);

@@ -21,6 +21,7 @@
 #include "core/text/scanner.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The extension of format `i`, without the dot; NULL after the last. All can be read, and the first can be
@@ -67,7 +68,8 @@ typedef struct RtMeshReader {
     RtScanner text; /* the whole file, with a 0 behind it; binary formats use path, at, end and error */
     RtScene *scene;
     uint32_t material;
-    RtTransform transform; /* of the vertices and normals */
+    RtVec3d offset;        /* subtracted from each vertex, before it is rounded to float32 */
+    RtTransform transform; /* of the vertices, after that, and of the normals */
     uint32_t vertex_count, vertex_capacity, normal_count, normal_capacity, corner_count, corner_capacity;
     RtVec3 *vertices;      /* [vertex_count] */
     RtVec3 *normals;       /* [normal_count] */
@@ -85,8 +87,8 @@ RtStatus rt_mesh_begin_text(RtMeshReader *r);
 #define rt_mesh_warn(r, ...)                                                                                 \
     rt_warn_at(&(r)->scene->warnings, (r)->text.path, (r)->text.last, (r)->text.error, __VA_ARGS__)
 
-/* Rejects coordinates that are not finite. */
-RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3 vertex);
+/* Adds the vertex less the offset. Rejects coordinates that are not finite. */
+RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3d vertex);
 /* Accepts any numbers: a normal that is not finite, with a warning, or has no length is ignored where it is
  * used. */
 RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal);
@@ -115,8 +117,14 @@ RtStatus rt_mesh_expect(RtMeshReader *r, const char *text);
 RtStatus rt_mesh_float(const RtMeshReader *r, RtWord word, float *out);
 RtStatus rt_mesh_integer(const RtMeshReader *r, RtWord word, int64_t *out);
 
-/* Takes three numbers of a line, the first as rt_mesh_take. */
-RtStatus rt_mesh_take_vector(RtMeshReader *r, bool first, const char *wanted, RtVec3 *out);
+/* The coordinate of a vertex whose word is `text`: `nearest`, the float32, or if it has an offset the double.
+ */
+static inline double rt_mesh_coordinate(const RtMeshReader *r, const char *text, int axis, float nearest) {
+    return r->offset.at[axis] == 0 ? (double)nearest : strtod(text, NULL);
+}
+
+/* Takes the three coordinates of a vertex from a line, the first as rt_mesh_take. */
+RtStatus rt_mesh_take_vertex(RtMeshReader *r, bool first, RtVec3d *out);
 
 /* Takes the three words of a normal; one that is no finite number becomes NaN. */
 RtStatus rt_mesh_take_normal(RtMeshReader *r, RtVec3 *out);

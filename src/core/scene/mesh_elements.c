@@ -249,7 +249,7 @@ static RtStatus take_text(File *file, Type type, Use use, double *out) {
         *out = (double)integer;
         return RT_OK;
     }
-    *out = (double)value;
+    *out = use > Z ? (double)value : rt_mesh_coordinate(file->mesh, word.text, (int)use, value);
     return RT_OK;
 }
 
@@ -317,7 +317,7 @@ static RtStatus take_element(File *file, const Element *element) {
     const uint32_t normal = 1U << NX | 1U << NY | 1U << NZ;
     if ((element->uses & normal) == normal)
         RT_TRY(rt_mesh_add_normal(file->mesh, rt_narrow(rt_vec3d(at[NX], at[NY], at[NZ]))));
-    return rt_mesh_add_vertex(file->mesh, rt_narrow(rt_vec3d(at[X], at[Y], at[Z])));
+    return rt_mesh_add_vertex(file->mesh, rt_vec3d(at[X], at[Y], at[Z]));
 }
 
 static RtStatus read_elements(File *file, const Element *element) {

@@ -448,8 +448,7 @@ static RtStatus add_primitive(Gltf *g, const Item *mesh, json_t *object, const P
     if (skinned) RT_TRY(apply_skin(g, &attributes, pose, &positions, &normals));
     r->transform = skinned ? rt_transform_identity() : pose->transform;
     r->vertex_count = r->normal_count = 0;
-    for (uint32_t i = 0; i < positions.count; i++)
-        RT_TRY(rt_mesh_add_vertex(r, rt_narrow(positions.vectors[i])));
+    for (uint32_t i = 0; i < positions.count; i++) RT_TRY(rt_mesh_add_vertex(r, positions.vectors[i]));
     for (uint32_t i = 0; i < normals.count; i++) RT_TRY(rt_mesh_add_normal(r, rt_narrow(normals.vectors[i])));
     return add_triangles(g, mode, indices.at ? indices.count : positions.count, indices.at);
 }
@@ -629,6 +628,9 @@ static RtStatus read_document(Gltf *g, const char *text, size_t size) {
 
 static RtStatus read_all(RtMeshReader *r, const char *text, size_t size, Buffer chunk) {
     Gltf g = {.mesh = r, .chunk = chunk, .size = size};
+    const RtVec3d origin = rt_transform_pointd(&r->transform, rt_scaled(r->offset, -1));
+    for (int a = 0; a < 3; a++) r->transform.m[a][3] = origin.at[a];
+    r->offset = rt_vec3d(0, 0, 0); /* of the scene: it is subtracted behind the transforms of the nodes */
     RtStatus status = read_document(&g, text, size);
     for (size_t i = 0; g.buffers && i < json_array_size(json_object_get(g.root, "buffers")); i++) {
         if (g.buffers[i].data != chunk.data) rt_free(g.buffers[i].data);

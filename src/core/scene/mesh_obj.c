@@ -31,11 +31,11 @@ static void take_rest(RtMeshReader *r, uint32_t *count, RtWord *last) {
 
 /* A fourth number is a weight; more are a colour. */
 static RtStatus read_vertex(RtMeshReader *r) {
-    RtVec3 vertex;
+    RtVec3d vertex;
     RtWord last;
     uint32_t more;
     float weight;
-    RT_TRY(rt_mesh_take_vector(r, false, "the x y z of a vertex", &vertex));
+    RT_TRY(rt_mesh_take_vertex(r, false, &vertex));
     take_rest(r, &more, &last);
     if (more == 1 && !(rt_scan_float(last, &weight) && weight == 1))
         RT_TRY(rt_mesh_warn(r, "a vertex has a weight, which only curves use: it is ignored"));

@@ -19,7 +19,8 @@ RtStatus rt_mesh_fail_short(const RtMeshReader *r, uint64_t count, uint64_t decl
 
 /* ---- vertices ---- */
 
-RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3 vertex) {
+RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3d place) {
+    const RtVec3 vertex = rt_narrow(rt_subd(place, r->offset));
     if (!rt_finite(vertex))
         return rt_mesh_fail(r, "vertex %u (counted from 0) is not finite: (%g, %g, %g)", r->vertex_count,
                             (double)vertex.x, (double)vertex.y, (double)vertex.z);
@@ -382,11 +383,13 @@ RtStatus rt_mesh_integer(const RtMeshReader *r, RtWord word, int64_t *out) {
     return RT_OK;
 }
 
-RtStatus rt_mesh_take_vector(RtMeshReader *r, bool first, const char *wanted, RtVec3 *out) {
+RtStatus rt_mesh_take_vertex(RtMeshReader *r, bool first, RtVec3d *out) {
     RtWord word;
+    float nearest = 0;
     for (int a = 0; a < 3; a++) {
-        RT_TRY(rt_mesh_take(r, first && a == 0, wanted, &word));
-        RT_TRY(rt_mesh_float(r, word, &out->at[a]));
+        RT_TRY(rt_mesh_take(r, first && a == 0, "the x y z of a vertex", &word));
+        RT_TRY(rt_mesh_float(r, word, &nearest));
+        out->at[a] = rt_mesh_coordinate(r, word.text, a, nearest);
     }
     return RT_OK;
 }

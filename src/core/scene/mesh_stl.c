@@ -52,7 +52,8 @@ static RtStatus read_binary(RtMeshReader *r, const char *bytes) {
     const uint32_t count = rt_mesh_u32(bytes + HEADER);
     for (uint32_t i = 0; i < count; i++) {
         const char *facet = bytes + RT_MESH_HEAD + (size_t)FACET * i;
-        for (size_t k = 0; k < 3; k++) RT_TRY(rt_mesh_add_vertex(r, rt_mesh_vector(facet + 12 + 12 * k)));
+        for (size_t k = 0; k < 3; k++)
+            RT_TRY(rt_mesh_add_vertex(r, rt_widen(rt_mesh_vector(facet + 12 + 12 * k))));
         RT_TRY(add_facet(r));
     }
     r->text.at += binary_size(bytes);
@@ -69,7 +70,7 @@ static RtStatus expect_end(RtMeshReader *r, const char *of) {
 }
 
 static RtStatus read_facet(RtMeshReader *r) {
-    RtVec3 vertex;
+    RtVec3d vertex;
     RtWord normal;
     RT_TRY(rt_mesh_expect(r, "facet"));
     RT_TRY(rt_mesh_expect(r, "normal"));
@@ -78,7 +79,7 @@ static RtStatus read_facet(RtMeshReader *r) {
     RT_TRY(rt_mesh_expect(r, "loop"));
     for (int k = 0; k < 3; k++) {
         RT_TRY(rt_mesh_expect(r, "vertex"));
-        RT_TRY(rt_mesh_take_vector(r, false, "the x y z of a vertex", &vertex));
+        RT_TRY(rt_mesh_take_vertex(r, false, &vertex));
         RT_TRY(rt_mesh_add_vertex(r, vertex));
     }
     RT_TRY(expect_end(r, "loop"));

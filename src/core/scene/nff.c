@@ -45,15 +45,26 @@ static RtStatus located(Reader *r, RtStatus status) {
 
 /* ---- numbers ---- */
 
-static RtStatus read_floats(Reader *r, const char *what, int count, float *out) {
+/* Numbers, or rows of `places` x y z and a number, which lie in the scene. */
+static RtStatus read_numbers(Reader *r, const char *what, int count, bool places, float *out) {
     char wanted[128];
     snprintf(wanted, sizeof wanted, "%s: a finite number that fits float32", what);
     for (int i = 0; i < count; i++) {
         const RtWord word = rt_scan_peek(&r->text);
         if (!rt_scan_float(word, &out[i])) return fail_inside(r, word, wanted);
+        const double offset = places && i % 4 < 3 ? r->scene->offset.at[i % 4] : 0;
+        if (offset != 0) out[i] = (float)(strtod(word.text, NULL) - offset);
         rt_scan_take(&r->text, word);
     }
     return RT_OK;
+}
+
+static RtStatus read_floats(Reader *r, const char *what, int count, float *out) {
+    return read_numbers(r, what, count, false, out);
+}
+
+static RtStatus read_places(Reader *r, const char *what, int count, float *out) {
+    return read_numbers(r, what, count, true, out);
 }
 
 static RtStatus read_count(Reader *r, const char *what, uint32_t lo, uint32_t hi, uint32_t *out) {
@@ -97,8 +108,8 @@ static RtStatus read_camera(Reader *r) {
         rt_scan_take(&r->text, next);
         given[word] = true;
         switch (word) {
-        case FROM: RT_TRY(read_floats(r, "from x y z", 3, camera->from.at)); break;
-        case AT: RT_TRY(read_floats(r, "at x y z", 3, camera->at.at)); break;
+        case FROM: RT_TRY(read_places(r, "from x y z", 3, camera->from.at)); break;
+        case AT: RT_TRY(read_places(r, "at x y z", 3, camera->at.at)); break;
         case UP: RT_TRY(read_floats(r, "up x y z", 3, camera->up.at)); break;
         case ANGLE: RT_TRY(read_floats(r, "angle in degrees", 1, &camera->fov)); break;
         case HITHER: RT_TRY(read_floats(r, "hither", 1, &camera->near)); break;
@@ -119,7 +130,7 @@ static RtStatus read_camera(Reader *r) {
 
 static RtStatus read_light(Reader *r) {
     RtVec3 position, color = {0, 0, 0};
-    RT_TRY(read_floats(r, "l x y z, the position of a light", 3, position.at));
+    RT_TRY(read_places(r, "l x y z, the position of a light", 3, position.at));
     bool plain = !number_follows(r);
     if (plain)
         RT_TRY(rt_append(&r->plain, &r->plain_count, &r->plain_capacity, &r->scene->light_count,
@@ -177,7 +188,7 @@ static RtStatus use_material(Reader *r) {
 
 static RtStatus read_sphere(Reader *r) {
     float s[4];
-    RT_TRY(read_floats(r, "a number of s x y z radius", 4, s));
+    RT_TRY(read_places(r, "a number of s x y z radius", 4, s));
     RT_TRY(use_material(r));
     return located(r,
                    rt_scene_add_sphere(r->scene, r->material, rt_vec3_load(s), fabsf(s[3]), r->text.error));
@@ -185,7 +196,7 @@ static RtStatus read_sphere(Reader *r) {
 
 static RtStatus read_cone(Reader *r) {
     float c[8];
-    RT_TRY(read_floats(r, "a number of c base.x y z base.radius apex.x y z apex.radius", 8, c));
+    RT_TRY(read_places(r, "a number of c base.x y z base.radius apex.x y z apex.radius", 8, c));
     RT_TRY(use_material(r));
     return located(r, rt_scene_add_cone(r->scene, r->material, rt_vec3_load(c), fabsf(c[3]),
                                         rt_vec3_load(c + 4), fabsf(c[7]), r->text.error));
@@ -206,7 +217,7 @@ static RtStatus read_vertices(Reader *r, bool patch, uint32_t *count) {
     RT_TRY(rt_reserve(&r->vertices, &r->vertex_capacity, *count, sizeof(RtVec3), r->text.error));
     if (patch) RT_TRY(rt_reserve(&r->normals, &r->normal_capacity, *count, sizeof(RtVec3), r->text.error));
     for (uint32_t i = 0; i < *count; i++) {
-        RT_TRY(read_floats(r, what, 3, r->vertices[i].at));
+        RT_TRY(read_places(r, what, 3, r->vertices[i].at));
         if (patch) RT_TRY(read_floats(r, what, 3, r->normals[i].at));
     }
     return use_material(r);

@@ -49,6 +49,7 @@ typedef struct RtScene {
     RtCamera camera;
     RtSampling sampling; /* of the camera's image: defines the primary rays */
     RtWarnings warnings; /* about the files it was read from */
+    RtVec3d offset;      /* readers subtract it from each position, in double, before they round to float32 */
 } RtScene;
 
 /* Opens the scene named `spec` and finishes it; on failure *scene is empty. */

@@ -108,9 +108,17 @@ static RtStatus add_rotation(Reader *r, const RtYamlNode *n, RtTransform *transf
     return rt_yaml_place(&r->yaml, status, n, NULL);
 }
 
+static const RtVec3d nowhere = {{0, 0, 0}};
+
+/* Whether the scene is to be moved, which needs doubles. */
+static bool has_offset(const Reader *r) {
+    return rt_dotd(r->scene->offset, r->scene->offset) > 0;
+}
+
 static RtStatus add_step(Reader *r, const RtYamlNode *step, RtTransform *transform) {
     const RtYaml *y = &r->yaml;
     float scale = 1;
+    double exact[3] = {0};
     RtVec3 stretch, move = {0};
     RT_TRY(rt_yaml_keys(y, step, "scale| stretch| rotate| translate|"));
     const RtYamlNode *rotate = rt_yaml_get(y, step, "rotate");
@@ -121,18 +129,21 @@ static RtStatus add_step(Reader *r, const RtYamlNode *step, RtTransform *transfo
     RT_TRY(rt_yaml_point(y, step, "translate", &move));
     RtStatus status = rt_yaml_get(y, step, "translate") ? rt_transform_translate(transform, move, r->error)
                                                         : rt_transform_scale(transform, stretch, r->error);
+    if (has_offset(r)) RT_TRY(rt_yaml_doubles(y, step, "translate", 3, exact));
+    for (int a = 0; a < 3 && has_offset(r); a++) transform->m[a][3] += exact[a] - (double)move.at[a];
     return rt_yaml_place(y, status, step, NULL);
 }
 
-/* The `transform` of an object. *given is `transform`, or NULL if there are no steps. */
-static RtStatus read_transform(Reader *r, const RtYamlNode *object, RtTransform *transform,
+/* The `transform` of an object, less `offset`. *given is `transform`, or NULL if it moves nothing. */
+static RtStatus read_transform(Reader *r, const RtYamlNode *object, RtVec3d offset, RtTransform *transform,
                                const RtTransform **given) {
     const RtYamlNode *steps = rt_yaml_get(&r->yaml, object, "transform");
     *transform = rt_transform_identity();
     RT_TRY(rt_yaml_list(&r->yaml, steps, NULL, 0, UINT32_MAX, "steps"));
     for (const RtYamlNode *n = rt_yaml_first(steps); n != rt_yaml_end(steps); n += n->size)
         RT_TRY(add_step(r, n, transform));
-    *given = rt_yaml_count(steps) ? transform : NULL;
+    for (int a = 0; a < 3; a++) transform->m[a][3] -= offset.at[a];
+    *given = rt_yaml_count(steps) || rt_dotd(offset, offset) > 0 ? transform : NULL;
     return RT_OK;
 }
 
@@ -140,7 +151,7 @@ static RtStatus read_sphere(const RtYaml *y, const RtYamlNode *n, RtVec3 *center
     *center = rt_vec3(0, 0, 0);
     *radius = 0;
     RT_TRY(rt_yaml_keys(y, n, "center radius material?"));
-    RT_TRY(rt_yaml_point(y, n, "center", center));
+    RT_TRY(rt_yaml_position(y, n, "center", center));
     return rt_yaml_float(y, n, "radius", radius);
 }
 
@@ -155,8 +166,8 @@ static RtStatus read_cone(const RtYaml *y, const RtYamlNode *n, RtCone *cone) {
     *cone = (RtCone){0};
     RT_TRY(rt_yaml_keys(
         y, n, cylinder ? "base apex radius material?" : "base base_radius apex apex_radius material?"));
-    RT_TRY(rt_yaml_point(y, n, "base", &cone->base));
-    RT_TRY(rt_yaml_point(y, n, "apex", &cone->apex));
+    RT_TRY(rt_yaml_position(y, n, "base", &cone->base));
+    RT_TRY(rt_yaml_position(y, n, "apex", &cone->apex));
     RT_TRY(rt_yaml_float(y, n, cylinder ? "radius" : "base_radius", &cone->base_radius));
     return rt_yaml_float(y, n, cylinder ? "radius" : "apex_radius", &cone->apex_radius);
 }
@@ -167,7 +178,7 @@ static RtStatus append_mesh(Reader *r, const RtYamlNode *object, uint32_t materi
     const RtTransform *given;
     char folder[RT_MAX_PATH], path[RT_MAX_PATH];
     const char *name = "";
-    RT_TRY(read_transform(r, object, &transform, &given));
+    RT_TRY(read_transform(r, object, nowhere, &transform, &given));
     RT_TRY(rt_yaml_text(&r->yaml, object, "path", RT_MAX_PATH - 1, &name));
     rt_path_folder(r->yaml.path, folder);
     RtStatus status = rt_path_join(folder, name, path, r->error);
@@ -227,8 +238,9 @@ static RtStatus solid_pair(Reader *r, const RtYamlNode *n, uint32_t *index) {
     RtVec3 first = {0}, second = {0};
     while (strcmp(pair->kind, key_of(&r->yaml, n)) != 0) pair++;
     RT_TRY(rt_yaml_keys(&r->yaml, n, pair->keys));
-    RT_TRY(rt_yaml_point(&r->yaml, n, pair->first, &first));
-    RT_TRY(rt_yaml_point(&r->yaml, n, pair->second, &second));
+    RT_TRY(rt_yaml_position(&r->yaml, n, pair->first, &first));
+    RT_TRY(pair->add == rt_solid_add_box ? rt_yaml_position(&r->yaml, n, pair->second, &second)
+                                         : rt_yaml_point(&r->yaml, n, pair->second, &second));
     return rt_yaml_place(&r->yaml, pair->add(&r->builder.set, first, second, index, r->error), n, NULL);
 }
 
@@ -245,7 +257,7 @@ static RtStatus solid_torus(Reader *r, const RtYamlNode *n, uint32_t *index) {
     RtVec3 center = {0}, axis = rt_vec3(0, 0, 1);
     float major = 0, minor = 0;
     RT_TRY(rt_yaml_keys(y, n, "center axis? major minor material?"));
-    RT_TRY(rt_yaml_point(y, n, "center", &center));
+    RT_TRY(rt_yaml_position(y, n, "center", &center));
     RT_TRY(rt_yaml_point(y, n, "axis", &axis));
     RT_TRY(rt_yaml_float(y, n, "major", &major));
     RT_TRY(rt_yaml_float(y, n, "minor", &minor));
@@ -375,10 +387,10 @@ static RtStatus read_formula(Reader *r, const RtYamlNode *n, RtCsgTerm *term) {
     return rt_yaml_place(&r->yaml, status, n, "formula");
 }
 
-static RtStatus move(Reader *r, const RtYamlNode *n, RtCsgTerm *term) {
+static RtStatus move(Reader *r, const RtYamlNode *n, RtVec3d offset, RtCsgTerm *term) {
     RtTransform transform;
     const RtTransform *given;
-    RT_TRY(read_transform(r, n, &transform, &given));
+    RT_TRY(read_transform(r, n, offset, &transform, &given));
     if (!given) return RT_OK;
     return rt_yaml_place(&r->yaml, rt_csg_move(&r->builder, *term, given, term, r->error), n, "transform");
 }
@@ -394,19 +406,38 @@ static RtStatus move(Reader *r, const RtYamlNode *n, RtCsgTerm *term) {
     X(cone, round)                                                                                           \
     X(torus, torus) X(polyhedron, polyhedron) X(mesh, mesh) X(facets, facets) X(standard, standard)
 
-/* Adds a solid of any kind. */
+/* The first of the points that place a solid. */
+static RtVec3d first_point(const RtYaml *y, const RtYamlNode *solid) {
+    static const char *const keys[] = {"center", "lo", "point", "base", "vertices", "triangles"};
+    RtVec3d point = nowhere;
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+        const RtYamlNode *n = rt_yaml_get(y, solid, keys[i]);
+        while (n && n->kind == RT_YAML_LIST && n->count > 0) n++;
+        for (int a = 0; n && a < 3 && n + a < y->nodes + y->node_count && n[a].kind == RT_YAML_SCALAR; a++)
+            point.at[a] = strtod(rt_yaml_text_of(y, n + a), NULL);
+    }
+    return point;
+}
+
+/* Adds a solid of any kind. In a scene with an offset, which trees subtract in the end, its points are read
+ * relative to the first, and it is moved there in double. */
 static RtStatus solid_kind(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) {
     uint32_t index = 0, material = 0;
     const RtYamlNode *n;
+    RtTransform place = rt_transform_identity();
+    r->yaml.offset = nowhere;
     if (rt_yaml_get(&r->yaml, entry, "formula")) return read_formula(r, entry, term);
 #define ADD(kind, function)                                                                                  \
     if ((n = rt_yaml_get(&r->yaml, entry, #kind))) {                                                         \
         RT_TRY(find_material(r, n, &material));                                                              \
+        if (has_offset(r)) r->yaml.offset = first_point(&r->yaml, n);                                        \
         RT_TRY(solid_##function(r, n, &index));                                                              \
     }
     SOLIDS(ADD)
 #undef ADD
-    return rt_csg_solid(&r->builder, index, material, term, r->error);
+    for (int a = 0; a < 3; a++) place.m[a][3] = r->yaml.offset.at[a];
+    RT_TRY(rt_csg_solid(&r->builder, index, material, term, r->error));
+    return has_offset(r) ? rt_csg_move(&r->builder, *term, &place, term, r->error) : RT_OK;
 }
 
 static RtStatus add_solid(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) {
@@ -418,7 +449,7 @@ static RtStatus add_solid(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) {
                             "digits and _",
                             name);
     RT_TRY(solid_kind(r, entry, term));
-    return move(r, entry, term);
+    return move(r, entry, nowhere, term);
 }
 
 static RtStatus add_solids(Reader *r, const RtYamlNode *list) {
@@ -442,7 +473,7 @@ static RtStatus object_csg(Reader *r, const RtYamlNode *csg) {
     RT_TRY(rt_yaml_keys(y, csg, "formula material? extents? transform?"));
     RT_TRY(rt_yaml_word(y, csg, "extents", "on off", &extents));
     RT_TRY(read_formula(r, csg, &term));
-    RT_TRY(move(r, csg, &term));
+    RT_TRY(move(r, csg, r->scene->offset, &term));
     RtStatus status = rt_scene_add_csg(r->scene, &r->builder, term, extents == 0, r->error);
     RT_TRY(rt_yaml_place(y, status, csg, "formula"));
     if (!rt_yaml_get(y, csg, "material")) return RT_OK;
@@ -471,10 +502,11 @@ static RtStatus object_polygon(Reader *r, const RtYamlNode *n, uint32_t material
     return rt_yaml_place(&r->yaml, status, n, "vertices");
 }
 
-static RtStatus read_points(const RtYaml *y, const RtYamlNode *list, RtVec3 points[3]) {
+/* Positions, or normals. */
+static RtStatus read_points(const RtYaml *y, const RtYamlNode *list, bool normals, RtVec3 points[3]) {
     RT_TRY(rt_yaml_list(y, list, NULL, 3, 3, "lists of numbers, as in [1, 2, 3]"));
     for (const RtYamlNode *p = rt_yaml_first(list); p != rt_yaml_end(list); p += p->size)
-        RT_TRY(rt_yaml_point(y, p, NULL, points++));
+        RT_TRY((normals ? rt_yaml_point : rt_yaml_position)(y, p, NULL, points++));
     return RT_OK;
 }
 
@@ -483,8 +515,8 @@ static RtStatus object_triangle(Reader *r, const RtYamlNode *n, uint32_t materia
     RtVec3 v[3] = {{0}}, at_vertices[3] = {{0}};
     RT_TRY(rt_yaml_keys(y, n, "vertices normals? material?"));
     const RtYamlNode *normals = rt_yaml_get(y, n, "normals");
-    RT_TRY(read_points(y, rt_yaml_get(y, n, "vertices"), v));
-    RT_TRY(read_points(y, normals, at_vertices));
+    RT_TRY(read_points(y, rt_yaml_get(y, n, "vertices"), false, v));
+    RT_TRY(read_points(y, normals, true, at_vertices));
     RtStatus status = rt_scene_add_triangle(r->scene, material, v, normals ? at_vertices : NULL, r->error);
     return rt_yaml_place(y, status, n, NULL);
 }
@@ -508,7 +540,7 @@ static RtStatus object_builtin(Reader *r, const RtYamlNode *n) {
     const char *name = "";
     RtScene scene;
     RT_TRY(rt_yaml_keys(&r->yaml, n, "name transform?"));
-    RT_TRY(read_transform(r, n, &transform, &given));
+    RT_TRY(read_transform(r, n, r->scene->offset, &transform, &given));
     RT_TRY(rt_yaml_text(&r->yaml, n, "name", RT_MAX_SCENE_NAME - 1, &name));
     RT_TRY(rt_yaml_place(&r->yaml, r->open_named(name, &scene, r->error), n, "name"));
     RtStatus status = rt_scene_append(r->scene, &scene, given, r->error);
@@ -573,8 +605,8 @@ static RtStatus set_camera(Reader *r, const RtYamlNode *n) {
         return rt_yaml_fail(y, n,
                             "`from` and `at` belong together: give both, or neither for a camera that sees "
                             "the whole scene");
-    RT_TRY(rt_yaml_point(y, n, "from", &camera->from));
-    RT_TRY(rt_yaml_point(y, n, "at", &camera->at));
+    RT_TRY(rt_yaml_position(y, n, "from", &camera->from));
+    RT_TRY(rt_yaml_position(y, n, "at", &camera->at));
     RT_TRY(rt_yaml_point(y, n, "up", &camera->up));
     RT_TRY(rt_yaml_float(y, n, "fov", &camera->fov));
     RT_TRY(rt_yaml_float(y, n, "near", &camera->near));
@@ -603,7 +635,7 @@ static RtStatus add_lights(Reader *r, const RtYamlNode *list) {
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
         RtVec3 position = {0}, intensity = rt_vec3(1, 1, 1);
         RT_TRY(rt_yaml_keys(y, n, "position intensity?"));
-        RT_TRY(rt_yaml_point(y, n, "position", &position));
+        RT_TRY(rt_yaml_position(y, n, "position", &position));
         RT_TRY(rt_yaml_point(y, n, "intensity", &intensity));
         RT_TRY(rt_yaml_place(y, rt_scene_add_light(r->scene, position, intensity, r->error), n, NULL));
     }
@@ -618,12 +650,14 @@ static RtStatus build(Reader *r) {
     RT_TRY(rt_yaml_check_format(y));
     RT_TRY(rt_yaml_keys(y, root, "camera? background? ambient? lights? materials? solids? objects format?"));
     const RtYamlNode *camera = rt_yaml_get(y, root, "camera"), *objects = rt_yaml_get(y, root, "objects");
+    r->yaml.offset = r->scene->offset;
     if (camera) RT_TRY(set_camera(r, camera));
     RT_TRY(set_color(r, root, "background", &r->scene->background));
     RT_TRY(set_color(r, root, "ambient", &r->scene->ambient));
     RT_TRY(add_lights(r, rt_yaml_get(y, root, "lights")));
     RT_TRY(add_materials(r, rt_yaml_get(y, root, "materials")));
     RT_TRY(add_solids(r, rt_yaml_get(y, root, "solids")));
+    r->yaml.offset = r->scene->offset;
     RT_TRY(rt_yaml_list(y, objects, NULL, 1, UINT32_MAX, "objects"));
     for (const RtYamlNode *n = rt_yaml_first(objects); n != rt_yaml_end(objects); n += n->size)
         RT_TRY(add_object(r, n));

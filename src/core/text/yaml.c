@@ -354,13 +354,15 @@ RtStatus rt_yaml_list(const RtYaml *yaml, const RtYamlNode *node, const char *ke
 
 /* ---- numbers ---- */
 
-/* Stores to whichever of the two is not NULL. */
-static RtStatus read_number(const RtYaml *yaml, const RtYamlNode *node, float *narrow, double *wide) {
+/* Stores to whichever of the two is not NULL; a float32 less `offset`. */
+static RtStatus read_number(const RtYaml *yaml, const RtYamlNode *node, double offset, float *narrow,
+                            double *wide) {
     if (!node) return RT_OK;
     if (node->kind != RT_YAML_SCALAR) return fail_unexpected(yaml, node, "a number, as in 1.5");
     const char *text = rt_yaml_text_of(yaml, node);
     char *end;
-    double value = narrow ? (double)strtof(text, &end) : strtod(text, &end);
+    double value = narrow && offset == 0 ? (double)strtof(text, &end) : strtod(text, &end);
+    if (narrow) value = (double)(float)(value - offset);
     if (end == text || *end || !isfinite(value))
         return rt_yaml_fail(yaml, node, "invalid value '%.60s': expected a finite number%s, as in 1.5", text,
                             narrow ? " that fits float32" : "");
@@ -369,12 +371,14 @@ static RtStatus read_number(const RtYaml *yaml, const RtYamlNode *node, float *n
     return RT_OK;
 }
 
-static RtStatus read_numbers(const RtYaml *yaml, const RtYamlNode *list, uint32_t count, float *narrow,
-                             double *wide) {
+/* Positions have an offset. */
+static RtStatus read_numbers(const RtYaml *yaml, const RtYamlNode *list, uint32_t count,
+                             const RtVec3d *offset, float *narrow, double *wide) {
     const char *what = count == 3 ? "numbers, as in [1, 2, 3]" : "numbers";
+    uint32_t i = 0;
     RT_TRY(rt_yaml_list(yaml, list, NULL, count, count, what));
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
-        RT_TRY(read_number(yaml, n, narrow, wide));
+        RT_TRY(read_number(yaml, n, offset ? offset->at[i++ % 3] : 0, narrow, wide));
         if (narrow) narrow++;
         if (wide) wide++;
     }
@@ -382,20 +386,24 @@ static RtStatus read_numbers(const RtYaml *yaml, const RtYamlNode *list, uint32_
 }
 
 RtStatus rt_yaml_float(const RtYaml *yaml, const RtYamlNode *node, const char *key, float *value) {
-    return read_number(yaml, value_of(yaml, node, key), value, NULL);
+    return read_number(yaml, value_of(yaml, node, key), 0, value, NULL);
 }
 
 RtStatus rt_yaml_double(const RtYaml *yaml, const RtYamlNode *node, const char *key, double *value) {
-    return read_number(yaml, value_of(yaml, node, key), NULL, value);
+    return read_number(yaml, value_of(yaml, node, key), 0, NULL, value);
 }
 
 RtStatus rt_yaml_point(const RtYaml *yaml, const RtYamlNode *node, const char *key, RtVec3 *value) {
-    return read_numbers(yaml, value_of(yaml, node, key), 3, value->at, NULL);
+    return read_numbers(yaml, value_of(yaml, node, key), 3, NULL, value->at, NULL);
+}
+
+RtStatus rt_yaml_position(const RtYaml *yaml, const RtYamlNode *node, const char *key, RtVec3 *value) {
+    return read_numbers(yaml, value_of(yaml, node, key), 3, &yaml->offset, value->at, NULL);
 }
 
 RtStatus rt_yaml_doubles(const RtYaml *yaml, const RtYamlNode *node, const char *key, uint32_t count,
                          double *values) {
-    return read_numbers(yaml, value_of(yaml, node, key), count, NULL, values);
+    return read_numbers(yaml, value_of(yaml, node, key), count, NULL, NULL, values);
 }
 
 RtStatus rt_yaml_rows(const RtYaml *yaml, const RtYamlNode *node, const char *key, uint32_t least,
@@ -408,7 +416,7 @@ RtStatus rt_yaml_rows(const RtYaml *yaml, const RtYamlNode *node, const char *ke
     float *row = *rows = rt_arena_alloc(memory, list->count, width * sizeof *row);
     RT_TRY(rt_arena_check(memory, "lists of numbers", yaml->error));
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size, row += width)
-        RT_TRY(read_numbers(yaml, n, width, row, NULL));
+        RT_TRY(read_numbers(yaml, n, width, &yaml->offset, row, NULL));
     return RT_OK;
 }
 

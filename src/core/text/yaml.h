@@ -35,6 +35,7 @@ typedef struct RtYamlNode {
 typedef struct RtYaml {
     const char *path;  /* borrowed: for messages */
     RtError *error;    /* borrowed; may be NULL */
+    RtVec3d offset;    /* subtracted from positions, in double, before they are rounded to float32 */
     RtYamlNode *nodes; /* owned, [node_count]; the first is the root */
     uint32_t node_count, node_capacity;
     char *text; /* owned, [text_size]: null-terminated scalars in UTF-8 without control characters */
@@ -100,8 +101,11 @@ RtStatus rt_yaml_point(const RtYaml *yaml, const RtYamlNode *node, const char *k
 RtStatus rt_yaml_doubles(const RtYaml *yaml, const RtYamlNode *node, const char *key, uint32_t count,
                          double *values);
 
-/* A list of at least `least` lists of `width` numbers each, consecutively in *rows, a block of `memory`; NULL
- * if the key is missing. */
+/* A position: a point less the offset. */
+RtStatus rt_yaml_position(const RtYaml *yaml, const RtYamlNode *node, const char *key, RtVec3 *value);
+
+/* A list of at least `least` lists of `width` / 3 positions each, consecutively in *rows, a block of
+ * `memory`; NULL if the key is missing. */
 RtStatus rt_yaml_rows(const RtYaml *yaml, const RtYamlNode *node, const char *key, uint32_t least,
                       uint32_t width, RtArena *memory, float **rows, uint32_t *count);
 
