@@ -78,6 +78,14 @@ void rt_free(void *block) {
     free(block);
 }
 
+const char *rt_discard(const char *from, const char *to) {
+    const size_t skipped = -(uintptr_t)from % LARGE_PAGE;
+    if ((size_t)(to - from) < skipped + LARGE_PAGE) return from;
+    const size_t bytes = ((size_t)(to - from) - skipped) / LARGE_PAGE * LARGE_PAGE;
+    madvise((char *)from + skipped, bytes, MADV_DONTNEED); /* a hint: it may fail */
+    return from + skipped + bytes;
+}
+
 static void set_limit(Limit *limit, uint64_t bytes, int64_t before) {
     const bool none = bytes == 0 || bytes > (uint64_t)INT64_MAX / 2;
     limit->given = bytes ? bytes : UINT64_MAX;
@@ -134,8 +142,7 @@ static bool move(void *array, uint32_t kept, uint32_t room, size_t size) {
     return true;
 }
 
-RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
-    if (needed <= *capacity) return RT_OK;
+RtStatus rt_grow(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
     if (needed > UINT32_MAX)
         return rt_fail(error, RT_BAD_INPUT, "more than %u elements are needed: split the scene", UINT32_MAX);
     uint64_t grown = (uint64_t)*capacity * 2;
@@ -153,16 +160,6 @@ void rt_trim(void *array, uint32_t count, uint32_t *capacity, size_t size) {
     enum { MUCH = 1 << 16 }; /* bytes */
     const bool trims = (size_t)(*capacity - count) * size >= MUCH;
     if (trims && move(array, count, count, size)) *capacity = count;
-}
-
-RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void *element, size_t size,
-                   RtError *error) {
-    char *elements;
-    RT_TRY(rt_reserve(array, capacity, (uint64_t)*count + 1, size, error));
-    memcpy(&elements, array, sizeof elements);
-    memcpy(elements + *count * size, element, size);
-    (*count)++;
-    return RT_OK;
 }
 
 /* Takes over `block`, of count * size bytes; NULL is a failure. */

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define RT_CACHE_LINE 64
 
@@ -22,6 +23,10 @@ void *rt_alloc_unset(size_t count, size_t size);
 
 /* Frees a block of rt_alloc or rt_alloc_unset; NULL is allowed. */
 void rt_free(void *block);
+
+/* Gives the large pages in [from, to), a part of a block, back to the system: their contents are lost. Returns
+ * the end of the last one, or `from`. */
+const char *rt_discard(const char *from, const char *to);
 
 /* Blocks that fail and are freed together: a build's, a command's, or one function's. Starts as {0}; used by
  * one thread at a time. So that nobody asks after each block, an allocation that fails is remembered:
@@ -52,15 +57,27 @@ void rt_arena_free(RtArena *arena, void *block);
 /* Frees all blocks; the arena is {0} again. */
 void rt_arena_clear(RtArena *arena);
 
-/* Grows an array to at least `needed` elements. `array` is the address of a pointer (of any type) to
- * `*capacity` elements of `size` bytes, or of NULL. Contents are kept; new elements are not initialised.
- * On failure nothing changes. */
-RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error);
+/* Grows an array to at least `needed` elements, more than `*capacity`. `array` is the address of a pointer (of
+ * any type) to `*capacity` elements of `size` bytes, or of NULL. Contents are kept; new elements are not
+ * initialised. On failure nothing changes. */
+RtStatus rt_grow(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error);
+
+/* The same if the array has fewer than `needed`. */
+static inline RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size,
+                                  RtError *error) {
+    return needed <= *capacity ? RT_OK : rt_grow(array, capacity, needed, size, error);
+}
 
 /* Appends a copy of `element`, of `size` bytes, to a growing array of `*count` elements; otherwise like
  * rt_reserve. `element` must not lie in the array. */
-RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void *element, size_t size,
-                   RtError *error);
+static inline RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void *element,
+                                 size_t size, RtError *error) {
+    char *elements;
+    RT_TRY(rt_reserve(array, capacity, (uint64_t)*count + 1, size, error));
+    memcpy(&elements, array, sizeof elements);
+    memcpy(elements + (*count)++ * size, element, size);
+    return RT_OK;
+}
 
 /* Shrinks such an array, of `count` elements, to its contents if much of it is unused. Leaves it as it is if
  * there is not enough memory for a copy. */
