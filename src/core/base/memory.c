@@ -130,13 +130,19 @@ RtStatus rt_memory_unlimit_process(RtStatus status, RtError *error) {
                    why.message, error);
 }
 
-/* Moves `kept` elements of an array to a new block of `room` elements; false if there is no memory for it.
- * The caller's pointer is no void pointer, so it is read and written as bytes. */
+/* Moves `kept` elements of an array to a new block of `room` elements, in pieces that are given back at once
+ * to keep the peak low; false if there is no memory for it. The caller's pointer is no char pointer, so it is
+ * read and written as bytes. */
 static bool move(void *array, uint32_t kept, uint32_t room, size_t size) {
-    void *old, *block = rt_alloc_unset(room, size);
+    const size_t bytes = kept * size;
+    char *old, *block = rt_alloc_unset(room, size);
     if (!block) return false;
     memcpy(&old, array, sizeof old);
-    if (old) memcpy(block, old, kept * size);
+    for (size_t done = 0, piece; done < bytes; done += piece) {
+        piece = bytes - done < LARGE_BLOCK ? bytes - done : LARGE_BLOCK;
+        memcpy(block + done, old + done, piece);
+        rt_discard(old + done, old + done + piece);
+    }
     rt_free(old);
     memcpy(array, &block, sizeof block);
     return true;

@@ -68,7 +68,7 @@ static RtStatus read_ahead(Obj *obj) {
     Obj later = {.mesh = obj->mesh, .textures = obj->textures};
     for (RtWord word = rt_scan_peek(&obj->mesh->text); word.length > 0;
          word = rt_scan_peek(&obj->mesh->text)) {
-        const bool first = word.first;
+        const bool first = obj->mesh->text.fresh;
         rt_scan_take(&obj->mesh->text, word);
         if (first && rt_scan_is(word, "v"))
             RT_TRY(read_listed(&later, VERTEX));
@@ -110,7 +110,7 @@ static RtStatus resolve(Obj *obj, int64_t index, List list, uint32_t *out) {
 static RtStatus read_corner(Obj *obj, RtWord word) {
     uint32_t indices[LISTS] = {0, 0, RT_NO_NORMAL};
     const char *const end = word.text + word.length;
-    RtWord part = {.text = word.text, .line = word.line};
+    RtWord part = {.text = word.text};
     for (List list = VERTEX; list < LISTS; list++) {
         int64_t index;
         const char *at = rt_scan_integer(part.text, &index);
@@ -162,6 +162,7 @@ static RtStatus read_statement(Obj *obj, RtWord word) {
 RtStatus rt_mesh_read_obj(RtMeshReader *r) {
     Obj obj = {.mesh = r};
     r->text.joins = true;
+    r->kept = r->text.at;
     RT_TRY(rt_mesh_begin_text(r));
     for (;;) {
         const RtWord word = rt_scan_peek(&r->text);

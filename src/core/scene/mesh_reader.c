@@ -303,6 +303,7 @@ static RtStatus add_fan_or_ears(RtMeshReader *r) {
 }
 
 RtStatus rt_mesh_add_polygon(RtMeshReader *r) {
+    enum { PIECE = 1 << 22 };
     RtStatus status;
     if (r->corner_count == 3)
         status = add_triangle(r, r->corners);
@@ -313,6 +314,7 @@ RtStatus rt_mesh_add_polygon(RtMeshReader *r) {
                               r->corner_count);
     r->corner_count = 0;
     r->face_count++;
+    if (r->text.at - r->kept >= PIECE && r->kept) r->kept = rt_discard(r->kept, r->text.at);
     return status;
 }
 
@@ -335,17 +337,17 @@ RtStatus rt_mesh_begin_text(RtMeshReader *r) {
 
 RtStatus rt_mesh_take(RtMeshReader *r, bool first, const char *wanted, RtWord *word) {
     *word = rt_scan_peek(&r->text);
-    if (word->length == 0 || (word->first && !first))
+    if (word->length == 0 || (r->text.fresh && !first))
         return rt_mesh_fail(r, "expected %s, found the end of the %s", wanted,
                             word->length ? "line" : "file");
-    if (first && !word->first) return rt_scan_fail(&r->text, *word, "the end of the line");
+    if (first && !r->text.fresh) return rt_scan_fail(&r->text, *word, "the end of the line");
     rt_scan_take(&r->text, *word);
     return RT_OK;
 }
 
 bool rt_mesh_more(RtMeshReader *r, RtWord *word) {
     *word = rt_scan_peek(&r->text);
-    const bool more = word->length > 0 && !word->first;
+    const bool more = word->length > 0 && !r->text.fresh;
     if (more) rt_scan_take(&r->text, *word);
     return more;
 }
@@ -392,7 +394,7 @@ RtStatus rt_mesh_take_normal(RtMeshReader *r, RtVec3 *out) {
 RtStatus rt_mesh_end(RtMeshReader *r) {
     const RtWord word = rt_scan_peek(&r->text);
     if (word.length > 0) return rt_scan_fail(&r->text, word, "the end of the file");
-    if (word.first) return RT_OK;
+    if (r->text.fresh) return RT_OK;
     return rt_mesh_warn(r, "the last line has no line break: its end may be missing");
 }
 

@@ -58,11 +58,11 @@ RtWord rt_scan_peek(RtScanner *s) {
     if (ends_word(s, s->at)) skip(s);
     const char *at = s->at;
     while (!ends_word(s, at)) at++;
-    return (RtWord){s->at, (size_t)(at - s->at), s->line, s->fresh};
+    return (RtWord){s->at, (size_t)(at - s->at)};
 }
 
 void rt_scan_skip_line(RtScanner *s) {
-    for (RtWord word = rt_scan_peek(s); word.length > 0 && !word.first; word = rt_scan_peek(s))
+    for (RtWord word = rt_scan_peek(s); word.length > 0 && !s->fresh; word = rt_scan_peek(s))
         rt_scan_take(s, word);
 }
 
@@ -73,7 +73,7 @@ bool rt_scan_is_like(RtWord word, const char *text) {
 enum { MOST_DIGITS = 18 }; /* that always fit int64_t */
 
 /* Appends the digits at `at` to *value, which may overflow; returns their end. */
-static const char *read_digits(const char *at, uint64_t *value) {
+static inline const char *read_digits(const char *at, uint64_t *value) {
     uint64_t sum = *value;
     for (unsigned digit; (digit = (unsigned)*at - '0') <= 9; at++) sum = sum * 10 + digit;
     *value = sum;
@@ -141,7 +141,7 @@ const char *rt_scan_show(RtWord word, char out[RT_WORD_SHOWN]) {
 
 RtStatus rt_scan_fail(const RtScanner *s, RtWord word, const char *wanted) {
     char text[RT_WORD_SHOWN];
-    return rt_fail_at(s->error, s->path, word.line, 0, "expected %s, found %s", wanted,
+    return rt_fail_at(s->error, s->path, word.text < s->at ? s->last : s->line, 0, "expected %s, found %s", wanted,
                       rt_scan_show(word, text));
 }
 

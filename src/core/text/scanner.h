@@ -13,15 +13,13 @@
 typedef struct RtWord {
     const char *text; /* into the file; not terminated */
     size_t length;    /* 0 at the end of the file */
-    size_t line;      /* counted from 1 */
-    bool first;       /* of its line */
 } RtWord;
 
 /* Initialise path and error, then rt_scan_begin. */
 typedef struct RtScanner {
     const char *path;
     const char *at, *end;
-    size_t line; /* of `at` */
+    size_t line; /* of `at`, which is the next word after rt_scan_peek; counted from 1 */
     size_t last; /* line of the last word taken */
     bool fresh;  /* no word of the current line was taken */
     bool joins;  /* a backslash at the end of a line joins it with the next one */
@@ -35,7 +33,7 @@ void rt_scan_begin(RtScanner *scanner, const char *text, size_t size);
 RtWord rt_scan_peek(RtScanner *scanner);
 static inline void rt_scan_take(RtScanner *scanner, RtWord word) {
     scanner->at += word.length;
-    scanner->last = word.line;
+    scanner->last = scanner->line;
     scanner->fresh = false;
 }
 /* Takes what is left of the line of the last word. */
@@ -55,7 +53,7 @@ const char *rt_scan_integer(const char *text, int64_t *out);
  * even. False if it is no such number, or overflows. In the locale of C (library.h sees to that). */
 bool rt_scan_float(RtWord word, float *out);
 
-/* Fails at the line of the word: "expected WANTED, found 'WORD'". */
+/* Fails at the line of the word, the next or the last one: "expected WANTED, found 'WORD'". */
 RtStatus rt_scan_fail(const RtScanner *scanner, RtWord word, const char *wanted);
 
 /* Puts the line, and `what` the message is about, in front of a message of RT_BAD_INPUT; returns `status`. */
