@@ -24,8 +24,8 @@ void *rt_alloc_unset(size_t count, size_t size);
 /* Frees a block of rt_alloc or rt_alloc_unset; NULL is allowed. */
 void rt_free(void *block);
 
-/* Gives the large pages in [from, to), a part of a block, back to the system: their contents are lost. Returns
- * the end of the last one, or `from`. */
+/* Gives the large pages in [from, to), a part of a block, back to the system: their contents are lost.
+ * Returns the end of the last one, or `from`. */
 const char *rt_discard(const char *from, const char *to);
 
 /* Blocks that fail and are freed together: a build's, a command's, or one function's. Starts as {0}; used by
@@ -57,8 +57,8 @@ void rt_arena_free(RtArena *arena, void *block);
 /* Frees all blocks; the arena is {0} again. */
 void rt_arena_clear(RtArena *arena);
 
-/* Grows an array to at least `needed` elements, more than `*capacity`. `array` is the address of a pointer (of
- * any type) to `*capacity` elements of `size` bytes, or of NULL. Contents are kept; new elements are not
+/* Grows an array to at least `needed` elements, more than `*capacity`. `array` is the address of a pointer
+ * (of any type) to `*capacity` elements of `size` bytes, or of NULL. Contents are kept; new elements are not
  * initialised. On failure nothing changes. */
 RtStatus rt_grow(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error);
 

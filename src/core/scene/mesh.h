@@ -65,7 +65,7 @@ typedef struct RtMeshCorner {
 
 typedef struct RtMeshReader {
     RtScanner text; /* the whole file, with a 0 behind it; binary formats use path, at, end and error */
-    const char *kept; /* what lies before text.at may be given back from here on; NULL: it is read again */
+    const char *given_back; /* the text up to here is not read again, and has no memory; NULL: it is kept */
     RtScene *scene;
     uint32_t material;
     RtTransform transform; /* of the vertices and normals */

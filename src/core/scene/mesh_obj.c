@@ -122,8 +122,7 @@ static RtStatus read_corner(Obj *obj, RtWord word) {
             RT_TRY(resolve(obj, index, list, &indices[list]));
         else if (list == VERTEX)
             break;
-        if (at == end)
-            return rt_mesh_add_corner(obj->mesh, (RtMeshCorner){indices[VERTEX], indices[NORMAL]});
+        if (at == end) return rt_mesh_add_corner(obj->mesh, (RtMeshCorner){indices[VERTEX], indices[NORMAL]});
         part.text = at + 1;
     }
     return rt_scan_fail(&obj->mesh->text, word, "v, v/vt, v//vn or v/vt/vn");
@@ -162,7 +161,7 @@ static RtStatus read_statement(Obj *obj, RtWord word) {
 RtStatus rt_mesh_read_obj(RtMeshReader *r) {
     Obj obj = {.mesh = r};
     r->text.joins = true;
-    r->kept = r->text.at;
+    r->given_back = r->text.at;
     RT_TRY(rt_mesh_begin_text(r));
     for (;;) {
         const RtWord word = rt_scan_peek(&r->text);

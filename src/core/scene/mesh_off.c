@@ -139,7 +139,7 @@ RtStatus rt_mesh_read_off(RtMeshReader *r) {
     Off off = {.mesh = r};
     uint64_t counts[3] = {0, 0, 0}; /* vertices, faces, edges */
     RT_TRY(take_keyword(&off));
-    r->kept = r->text.at;
+    r->given_back = r->text.at;
     if (!off.binary) RT_TRY(rt_mesh_begin_text(r));
     RT_TRY(take_counts(&off, counts));
     for (int faces = 0; faces < 2; faces++) {

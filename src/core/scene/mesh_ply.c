@@ -312,7 +312,7 @@ static RtStatus read_all(Ply *ply) {
     RtScanner *text = &ply->mesh->text, starts[MOST_ELEMENTS];
     uint32_t vertices = 0;
     while (ply->elements[vertices].kind != VERTEX) vertices++;
-    if (vertices == 0) ply->mesh->kept = text->at;
+    if (vertices == 0) ply->mesh->given_back = text->at;
     for (uint32_t i = 0; i < ply->element_count; i++) {
         starts[i] = *text;
         ply->skips = i < vertices;

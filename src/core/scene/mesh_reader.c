@@ -303,7 +303,6 @@ static RtStatus add_fan_or_ears(RtMeshReader *r) {
 }
 
 RtStatus rt_mesh_add_polygon(RtMeshReader *r) {
-    enum { PIECE = 1 << 22 };
     RtStatus status;
     if (r->corner_count == 3)
         status = add_triangle(r, r->corners);
@@ -314,7 +313,7 @@ RtStatus rt_mesh_add_polygon(RtMeshReader *r) {
                               r->corner_count);
     r->corner_count = 0;
     r->face_count++;
-    if (r->text.at - r->kept >= PIECE && r->kept) r->kept = rt_discard(r->kept, r->text.at);
+    if (r->given_back) r->given_back = rt_discard(r->given_back, r->text.at);
     return status;
 }
 
@@ -385,8 +384,7 @@ RtStatus rt_mesh_take_normal(RtMeshReader *r, RtVec3 *out) {
     RtWord word;
     for (int a = 0; a < 3; a++) {
         RT_TRY(rt_mesh_take(r, false, "the x y z of a normal", &word));
-        if (rt_scan_float(word, &out->at[a])) continue;
-        out->at[a] = NAN;
+        if (!rt_scan_float(word, &out->at[a])) out->at[a] = NAN;
     }
     return RT_OK;
 }

@@ -49,13 +49,13 @@ static RtStatus add_facet(RtMeshReader *r) {
 }
 
 static RtStatus read_binary(RtMeshReader *r) {
-    const char *facet = r->text.at + RT_MESH_HEAD;
-    for (uint32_t left = rt_mesh_u32(r->text.at + HEADER); left > 0; left--, facet += FACET) {
-        for (size_t k = 0; k < 3; k++) RT_TRY(rt_mesh_add_vertex(r, rt_mesh_vector(facet + 12 + 12 * k)));
-        r->text.at = facet + FACET;
+    uint32_t left = rt_mesh_u32(r->text.at + HEADER);
+    for (r->text.at += RT_MESH_HEAD; left > 0; left--) {
+        for (size_t k = 0; k < 3; k++)
+            RT_TRY(rt_mesh_add_vertex(r, rt_mesh_vector(r->text.at + 12 + 12 * k)));
+        r->text.at += FACET;
         RT_TRY(add_facet(r));
     }
-    r->text.at = facet;
     return rt_mesh_end_binary(r);
 }
 
@@ -98,7 +98,7 @@ static RtStatus read_solid(RtMeshReader *r) {
 RtStatus rt_mesh_read_stl(RtMeshReader *r) {
     const size_t size = (size_t)(r->text.end - r->text.at);
     r->text.last = 0;
-    r->kept = r->text.at;
+    r->given_back = r->text.at;
     if (is_binary(r->text.at, size)) return read_binary(r);
     RT_TRY(rt_mesh_begin_text(r));
     do RT_TRY(read_solid(r));

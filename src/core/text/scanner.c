@@ -24,9 +24,9 @@ static size_t joint(const RtScanner *s, const char *at) {
 /* Whether no word goes on here: at a blank, a '#', a joint or the end of the text. */
 static inline bool ends_word(const RtScanner *s, const char *at) {
     enum { NO, YES, PERHAPS };
-    static const unsigned char ends[256] = {[0] = PERHAPS, ['\\'] = PERHAPS, ['#'] = YES,
-                                            [' '] = YES,   ['\t'] = YES,     ['\n'] = YES,
-                                            ['\v'] = YES,  ['\f'] = YES,     ['\r'] = YES};
+    static const unsigned char ends[256] = {
+        [0] = PERHAPS, ['\\'] = PERHAPS, ['#'] = YES,  [' '] = YES, ['\t'] = YES,
+        ['\n'] = YES,  ['\v'] = YES,     ['\f'] = YES, ['\r'] = YES};
     const unsigned char kind = ends[(unsigned char)*at];
     return kind != NO && (kind == YES || at >= s->end || joint(s, at));
 }
@@ -38,7 +38,7 @@ void rt_scan_begin(RtScanner *s, const char *text, size_t size) {
     s->fresh = true;
 }
 
-/* To the next word. */
+/* Goes to the next word. */
 static void skip(RtScanner *s) {
     for (; s->at < s->end && ends_word(s, s->at); s->at++) {
         if (ends_line(s->at)) {
@@ -98,8 +98,8 @@ bool rt_scan_float(RtWord word, float *out) {
                                            1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
     const bool negative = *word.text == '-';
     const char *const first = word.text + (negative || *word.text == '+');
-    uint64_t digits = 0, power = 0, bits;
-    int64_t exponent = 0;
+    uint64_t digits = 0, bits;
+    int64_t exponent = 0, power = 0;
     const char *at = read_digits(first, &digits);
     ptrdiff_t count = at - first;
     if (*at == '.') {
@@ -109,12 +109,10 @@ bool rt_scan_float(RtWord word, float *out) {
         count += at - fraction;
     }
     if (*at == 'e' || *at == 'E') {
-        const bool below = at[1] == '-';
-        const char *const digit = at + (below || at[1] == '+' ? 2 : 1);
-        at = read_digits(digit, &power);
-        if (at == digit) return false;
-        if (at - digit > MOST_DIGITS) power = UINT32_MAX;
-        exponent += below ? -(int64_t)power : (int64_t)power;
+        const char *const sign = at + 1;
+        at = rt_scan_integer(sign, &power);
+        if (at == sign) return false;
+        exponent += power;
     }
     if (count == 0 || at != word.text + word.length) return false;
     if (count <= MOST_DIGITS && digits <= 1000000000000000u && exponent >= -EXACT && exponent <= EXACT) {
@@ -141,8 +139,8 @@ const char *rt_scan_show(RtWord word, char out[RT_WORD_SHOWN]) {
 
 RtStatus rt_scan_fail(const RtScanner *s, RtWord word, const char *wanted) {
     char text[RT_WORD_SHOWN];
-    return rt_fail_at(s->error, s->path, word.text < s->at ? s->last : s->line, 0, "expected %s, found %s", wanted,
-                      rt_scan_show(word, text));
+    return rt_fail_at(s->error, s->path, word.text < s->at ? s->last : s->line, 0, "expected %s, found %s",
+                      wanted, rt_scan_show(word, text));
 }
 
 RtStatus rt_scan_place(const RtScanner *s, RtStatus status, size_t line, const char *what) {

@@ -45,8 +45,8 @@ static inline bool rt_scan_is(RtWord word, const char *text) {
 /* The same in upper or lower case. */
 bool rt_scan_is_like(RtWord word, const char *text);
 
-/* Reads an integer of at most 18 digits, with a sign or without, at the beginning of `text`. Returns its end, or
- * `text` if there is none. */
+/* Reads an integer of at most 18 digits, with a sign or without, at the beginning of `text`. Returns its end,
+ * or `text` if there is none. */
 const char *rt_scan_integer(const char *text, int64_t *out);
 
 /* Reads the whole word, a decimal number such as -1, .5 or 2.5e-3, as the float32 nearest to it, ties to
