@@ -98,8 +98,8 @@ bool rt_scan_float(RtWord word, float *out) {
                                            1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
     const bool negative = *word.text == '-';
     const char *const first = word.text + (negative || *word.text == '+');
-    uint64_t digits = 0, bits;
-    int64_t exponent = 0, power = 0;
+    uint64_t digits = 0, power = 0, bits;
+    int64_t exponent = 0;
     const char *at = read_digits(first, &digits);
     ptrdiff_t count = at - first;
     if (*at == '.') {
@@ -109,10 +109,11 @@ bool rt_scan_float(RtWord word, float *out) {
         count += at - fraction;
     }
     if (*at == 'e' || *at == 'E') {
-        const char *const sign = at + 1;
-        at = rt_scan_integer(sign, &power);
-        if (at == sign) return false;
-        exponent += power;
+        const char *const sign = at + 1, *const digit = sign + (*sign == '-' || *sign == '+');
+        at = read_digits(digit, &power);
+        if (at == digit) return false;
+        if (at - digit > MOST_DIGITS) power = UINT32_MAX;
+        exponent += *sign == '-' ? -(int64_t)power : (int64_t)power;
     }
     if (count == 0 || at != word.text + word.length) return false;
     if (count <= MOST_DIGITS && digits <= 1000000000000000u && exponent >= -EXACT && exponent <= EXACT) {
