@@ -148,7 +148,8 @@ static bool move(void *array, uint32_t kept, uint32_t room, size_t size) {
     return true;
 }
 
-RtStatus rt_grow(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
+RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
+    if (needed <= *capacity) return RT_OK;
     if (needed > UINT32_MAX)
         return rt_fail(error, RT_BAD_INPUT, "more than %u elements are needed: split the scene", UINT32_MAX);
     uint64_t grown = (uint64_t)*capacity * 2;

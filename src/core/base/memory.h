@@ -57,23 +57,17 @@ void rt_arena_free(RtArena *arena, void *block);
 /* Frees all blocks; the arena is {0} again. */
 void rt_arena_clear(RtArena *arena);
 
-/* Grows an array to at least `needed` elements, more than `*capacity`. `array` is the address of a pointer
- * (of any type) to `*capacity` elements of `size` bytes, or of NULL. Contents are kept; new elements are not
- * initialised. On failure nothing changes. */
-RtStatus rt_grow(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error);
-
-/* The same if the array has fewer than `needed`. */
-static inline RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size,
-                                  RtError *error) {
-    return needed <= *capacity ? RT_OK : rt_grow(array, capacity, needed, size, error);
-}
+/* Grows an array to at least `needed` elements. `array` is the address of a pointer (of any type) to
+ * `*capacity` elements of `size` bytes, or of NULL. Contents are kept; new elements are not initialised.
+ * On failure nothing changes. */
+RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error);
 
 /* Appends a copy of `element`, of `size` bytes, to a growing array of `*count` elements; otherwise like
  * rt_reserve. `element` must not lie in the array. */
 static inline RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void *element,
                                  size_t size, RtError *error) {
     char *elements;
-    RT_TRY(rt_reserve(array, capacity, (uint64_t)*count + 1, size, error));
+    if (*count == *capacity) RT_TRY(rt_reserve(array, capacity, (uint64_t)*count + 1, size, error));
     memcpy(&elements, array, sizeof elements);
     memcpy(elements + (*count)++ * size, element, size);
     return RT_OK;

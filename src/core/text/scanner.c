@@ -99,15 +99,10 @@ bool rt_scan_float(RtWord word, float *out) {
     const bool negative = *word.text == '-';
     const char *const first = word.text + (negative || *word.text == '+');
     uint64_t digits = 0, power = 0, bits;
-    int64_t exponent = 0;
-    const char *at = read_digits(first, &digits);
-    ptrdiff_t count = at - first;
-    if (*at == '.') {
-        const char *const fraction = at + 1;
-        at = read_digits(fraction, &digits);
-        exponent = fraction - at;
-        count += at - fraction;
-    }
+    const char *const point = read_digits(first, &digits), *at = point;
+    if (*point == '.') at = read_digits(point + 1, &digits);
+    const ptrdiff_t count = at - first - (*point == '.');
+    int64_t exponent = *point == '.' ? point + 1 - at : 0;
     if (*at == 'e' || *at == 'E') {
         const char *const sign = at + 1, *const digit = sign + (*sign == '-' || *sign == '+');
         at = read_digits(digit, &power);
