@@ -387,8 +387,17 @@ RT_TEST(an_arena_remembers_the_first_block_that_failed_and_frees_all) {
     assert_int_equal(rt_arena_check(&huge, "a test", NULL), RT_NO_MEMORY);
 }
 
+RT_TEST(whole_pages_of_a_part_of_a_block_are_given_back_and_no_others) {
+    enum { PAGE = 1 << 21, PAGES = 4 };
+    OWNED_MEMORY char *block = rt_alloc(PAGES, PAGE);
+    memset(block, 1, (size_t)PAGES * PAGE);
+    assert_ptr_equal(rt_discard(block + 1, block + 3 * PAGE - 1), block + 2 * PAGE);
+    for (int i = 0; i < PAGES; i++) assert_int_equal(block[i * PAGE + 1], i != 1);
+    assert_ptr_equal(rt_discard(block + 1, block + 2 * PAGE - 1), block + 1);
+}
+
 RT_TEST(a_trimmed_array_keeps_its_elements_and_no_unused_room) {
-    enum { COUNT = 1 << 16 };
+    enum { COUNT = 5 << 19 }; /* several large pages */
     OWNED_MEMORY uint32_t *array = NULL;
     uint32_t capacity = 0, count = 0;
     for (uint32_t i = 0; i <= COUNT; i++)

@@ -3,6 +3,7 @@
  */
 #include "scene_testing.h"
 
+#include "core/base/clock.h"
 #include "core/base/file.h"
 #include "core/scene/load.h"
 #include "core/scene/mesh.h"
@@ -88,6 +89,7 @@ static const struct {
                     {"-1.0000000596046447753906250001", -0x1.000002p0f},
                     {"-1.0000001788139343261718749999", -0x1.000002p0f},
                     {"-0.100000001490116119384765625", -0.1f},
+                    {"-1.8446744073709551617", -1.84467435f}, /* 2^64 + 1 */
                     {"-1234.56789e-2", -12.3456789f},
                     {"-37.83e-6", -3.783e-5f},
                     {"-1.17549435e-38", -0x1p-126f},
@@ -301,6 +303,60 @@ RT_TEST(a_text_stl_is_read_whatever_its_normals_say) {
     assert_int_equal(scene.geometry.triangle_count, 2);
     assert_int_equal(scene.geometry.vertex_normal_count, 0);
     assert_true(rt_triangle_normal(&scene.geometry.triangles[1]).z == 1);
+}
+
+/* A strip of triangles; `blanks` end each line. If the faces of a PLY stand first, one more stands last. */
+static RtScene strip_scene(bool ply, bool faces_first, int blanks) {
+    enum { COUNT = 30000 };
+    static const char *const lines[][2] = {{"v %d %d %d%*s\n", "f %d %d %d%*s\n"},
+                                           {"%d %d %d%*s\n", "3 %d %d %d%*s\n"}};
+    static const char *const elements[] = {
+        "element vertex %d\nproperty float x\nproperty float y\nproperty float z\n",
+        "element face %d\nproperty list uchar int vertex_indices\n"};
+    const int order[2] = {faces_first, !faces_first}, counts[2] = {COUNT, COUNT - 2};
+    const char *path = ply ? PLY_NAME : OBJ_NAME;
+    FILE *out = fopen(path, "wb");
+    assert_non_null(out);
+    if (ply) fprintf(out, "ply\nformat ascii 1.0\n");
+    for (int k = 0; ply && k < 2; k++) fprintf(out, elements[order[k]], counts[order[k]]);
+    if (ply && faces_first) fprintf(out, "element tristrips 1\nproperty list int int vertex_indices\n");
+    if (ply) fprintf(out, "end_header\n");
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < counts[order[k]]; i++) {
+            const int first = i + !ply, corners[2][3] = {{i / 2, i % 2, 0}, {first, first + 1, first + 2}};
+            const int *c = corners[order[k]];
+            fprintf(out, lines[ply][order[k]], c[0], c[1], c[2], blanks, "");
+        }
+    }
+    if (ply && faces_first) fprintf(out, "3 0 1 2\n");
+    fclose(out);
+    return open_scene(path);
+}
+
+RT_TEST(a_text_whose_memory_is_given_back_on_the_way_is_read_like_a_short_one) {
+    for (int form = 0; form < 4; form++) {
+        OWNED_SCENE scene = strip_scene(form & 1, form & 2, 300);
+        OWNED_SCENE like = strip_scene(form & 1, form & 2, 0);
+        assert_true(rt_scene_fingerprint(&scene) == rt_scene_fingerprint(&like));
+    }
+}
+
+RT_TEST(a_text_takes_time_in_proportion_to_its_length_whatever_it_repeats) {
+    enum { TIMES = 1 << 21 };
+    static const char *const repeated[][2] = {{"# ", "x"},  {"", "#\n"}, {"o ", "x"},          {"o ", "x "},
+                                              {"o ", "\\"}, {"", "\r"},  {"v 1 2 3 ", "\\\n"}, {"o", " "}};
+    for (size_t i = 0; i < sizeof repeated / sizeof repeated[0]; i++) {
+        FILE *out = fopen(OBJ_NAME, "wb");
+        assert_non_null(out);
+        fputs(repeated[i][0], out);
+        for (int k = 0; k < TIMES; k++) fputs(repeated[i][1], out);
+        fputs(" \nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n", out);
+        fclose(out);
+        const double start = rt_thread_seconds();
+        OWNED_SCENE scene = open_scene(OBJ_NAME);
+        assert_true(rt_thread_seconds() - start < RT_SHARE(1, 10));
+        assert_true(scene.geometry.triangles[0].v[1].x == 1);
+    }
 }
 
 RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {

@@ -286,7 +286,7 @@ RT_TEST(a_damaged_off_is_refused_with_its_line) {
         {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n", "6:", "found the end of the file"},
         {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n", "7:", "expected the end of the file"},
         {"OFF\n-3 1 0\n", "2:", "a count of at least 0"},
-        {"OFF\n3 1 0\n0 0\n1 0 0\n", "3:", "found the end of the line"},
+        {"OFF\n3 1 0\n0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "6:", "ends after 0 of the 1 faces"},
     };
     ASSERT_REFUSED("off", cases);
 }

@@ -132,6 +132,7 @@ RT_TEST(stl_and_off_of_other_programs_are_read) {
          "0 1 0 0 0 1 1 1 1 1 0 0\n3 0 1 2\n",
          1, NULL},
         {"off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2", 1, "no line break"},
+        {"off", "OFF\n3 1 0\n0 0\n0\n1 0 0 9\n0 1 0\n3 0\n1 2\n", 1, "goes on in the next line"},
     };
     ASSERT_READS(cases);
     static const char binary[] = "OFF BINARY\n\0\0\0\3\0\0\0\1\0\0\0\0"

@@ -78,6 +78,14 @@ void rt_free(void *block) {
     free(block);
 }
 
+const char *rt_discard(const char *from, const char *to) {
+    const size_t skipped = -(uintptr_t)from % LARGE_PAGE;
+    if ((size_t)(to - from) < skipped + LARGE_PAGE) return from;
+    const size_t bytes = ((size_t)(to - from) - skipped) / LARGE_PAGE * LARGE_PAGE;
+    madvise((char *)from + skipped, bytes, MADV_DONTNEED); /* a hint: it may fail */
+    return from + skipped + bytes;
+}
+
 static void set_limit(Limit *limit, uint64_t bytes, int64_t before) {
     const bool none = bytes == 0 || bytes > (uint64_t)INT64_MAX / 2;
     limit->given = bytes ? bytes : UINT64_MAX;
@@ -122,13 +130,19 @@ RtStatus rt_memory_unlimit_process(RtStatus status, RtError *error) {
                    why.message, error);
 }
 
-/* Moves `kept` elements of an array to a new block of `room` elements; false if there is no memory for it.
- * The caller's pointer is no void pointer, so it is read and written as bytes. */
+/* Moves `kept` elements of an array to a new block of `room` elements, in pieces that are given back at once
+ * to keep the peak low; false if there is no memory for it. The caller's pointer is no char pointer, so it is
+ * read and written as bytes. */
 static bool move(void *array, uint32_t kept, uint32_t room, size_t size) {
-    void *old, *block = rt_alloc_unset(room, size);
+    const size_t bytes = kept * size;
+    char *old, *block = rt_alloc_unset(room, size);
     if (!block) return false;
     memcpy(&old, array, sizeof old);
-    if (old) memcpy(block, old, kept * size);
+    for (size_t done = 0, piece; done < bytes; done += piece) {
+        piece = bytes - done < LARGE_BLOCK ? bytes - done : LARGE_BLOCK;
+        memcpy(block + done, old + done, piece);
+        rt_discard(old + done, old + done + piece);
+    }
     rt_free(old);
     memcpy(array, &block, sizeof block);
     return true;
@@ -153,16 +167,6 @@ void rt_trim(void *array, uint32_t count, uint32_t *capacity, size_t size) {
     enum { MUCH = 1 << 16 }; /* bytes */
     const bool trims = (size_t)(*capacity - count) * size >= MUCH;
     if (trims && move(array, count, count, size)) *capacity = count;
-}
-
-RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void *element, size_t size,
-                   RtError *error) {
-    char *elements;
-    RT_TRY(rt_reserve(array, capacity, (uint64_t)*count + 1, size, error));
-    memcpy(&elements, array, sizeof elements);
-    memcpy(elements + *count * size, element, size);
-    (*count)++;
-    return RT_OK;
 }
 
 /* Takes over `block`, of count * size bytes; NULL is a failure. */

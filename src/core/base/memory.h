@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define RT_CACHE_LINE 64
 
@@ -22,6 +23,10 @@ void *rt_alloc_unset(size_t count, size_t size);
 
 /* Frees a block of rt_alloc or rt_alloc_unset; NULL is allowed. */
 void rt_free(void *block);
+
+/* Gives the large pages in [from, to), a part of a block, back to the system: their contents are lost.
+ * Returns the end of the last one, or `from`. */
+const char *rt_discard(const char *from, const char *to);
 
 /* Blocks that fail and are freed together: a build's, a command's, or one function's. Starts as {0}; used by
  * one thread at a time. So that nobody asks after each block, an allocation that fails is remembered:
@@ -59,8 +64,14 @@ RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t siz
 
 /* Appends a copy of `element`, of `size` bytes, to a growing array of `*count` elements; otherwise like
  * rt_reserve. `element` must not lie in the array. */
-RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void *element, size_t size,
-                   RtError *error);
+static inline RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void *element,
+                                 size_t size, RtError *error) {
+    char *elements;
+    if (*count == *capacity) RT_TRY(rt_reserve(array, capacity, (uint64_t)*count + 1, size, error));
+    memcpy(&elements, array, sizeof elements);
+    memcpy(elements + (*count)++ * size, element, size);
+    return RT_OK;
+}
 
 /* Shrinks such an array, of `count` elements, to its contents if much of it is unused. Leaves it as it is if
  * there is not enough memory for a copy. */

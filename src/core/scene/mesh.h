@@ -66,6 +66,7 @@ typedef struct RtMeshCorner {
 
 typedef struct RtMeshReader {
     RtScanner text; /* the whole file, with a 0 behind it; binary formats use path, at, end and error */
+    const char *given_back; /* the text up to here is not read again, and has no memory; NULL: it is kept */
     RtScene *scene;
     uint32_t material;
     RtVec3d offset;        /* subtracted from each vertex, before it is rounded to float32 */

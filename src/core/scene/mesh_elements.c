@@ -45,7 +45,7 @@ typedef struct Element {
 typedef struct File {
     RtMeshReader *mesh;
     bool binary, big_endian;
-    bool open;   /* a line of text may go on behind its element */
+    bool open;   /* more may stand on a line of text than its element, or less */
     bool starts; /* the next number begins a line of text */
     bool skips;  /* lists of vertices: they stand before the vertices, and are read later */
     uint32_t element_count, property_count;
@@ -234,9 +234,11 @@ static RtStatus take_binary(File *file, Type type, double *out) {
 
 /* Integers may be written as 255.0. What is neither a coordinate nor an index need not be a number. */
 static RtStatus take_text(File *file, Type type, Use use, double *out) {
-    RtWord word;
+    RtWord word = rt_scan_peek(&file->mesh->text);
     float value = NAN;
-    RT_TRY(rt_mesh_take(file->mesh, file->starts, "a number", &word));
+    const bool goes_on = file->open && word.length > 0 && file->mesh->text.fresh && !file->starts;
+    if (goes_on) RT_TRY(rt_mesh_warn(file->mesh, "a vertex or face goes on in the next line"));
+    RT_TRY(rt_mesh_take(file->mesh, file->starts || goes_on, "a number", &word));
     file->starts = false;
     if (use != INDICES && use > Z) {
         if (!rt_scan_float(word, &value))
@@ -337,6 +339,7 @@ static RtStatus read_all(File *file) {
     RtScanner *text = &file->mesh->text, starts[MOST_ELEMENTS];
     uint32_t vertices = 0;
     while (file->elements[vertices].kind != VERTEX) vertices++;
+    if (vertices == 0) file->mesh->given_back = text->at;
     for (uint32_t i = 0; i < file->element_count; i++) {
         starts[i] = *text;
         file->skips = i < vertices;

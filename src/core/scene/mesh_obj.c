@@ -68,7 +68,7 @@ static RtStatus read_ahead(Obj *obj) {
     Obj later = {.mesh = obj->mesh, .textures = obj->textures};
     for (RtWord word = rt_scan_peek(&obj->mesh->text); word.length > 0;
          word = rt_scan_peek(&obj->mesh->text)) {
-        const bool first = word.first;
+        const bool first = obj->mesh->text.fresh;
         rt_scan_take(&obj->mesh->text, word);
         if (first && rt_scan_is(word, "v"))
             RT_TRY(read_listed(&later, VERTEX));
@@ -87,11 +87,9 @@ static RtStatus read_ahead(Obj *obj) {
 
 /* Positive indices count from 1, negative ones from the latest, which is -1. Textures and normals may be
  * missing. */
-static RtStatus resolve(Obj *obj, RtWord part, List list, uint32_t *out) {
+static RtStatus resolve(Obj *obj, int64_t index, List list, uint32_t *out) {
     static const char *const names[LISTS] = {"vertex", "texture coordinate", "normal"};
     RtMeshReader *r = obj->mesh;
-    int64_t index = 0;
-    RT_TRY(rt_mesh_integer(r, part, &index));
     const int64_t from_start = index < 0 ? obj->before[list] + index : index - 1;
     if (from_start >= count_of(obj, list) && !obj->ahead) RT_TRY(read_ahead(obj));
     if (from_start >= 0 && from_start < count_of(obj, list)) {
@@ -110,18 +108,22 @@ static RtStatus resolve(Obj *obj, RtWord part, List list, uint32_t *out) {
 
 /* "v", "v/vt", "v//vn" or "v/vt/vn"; a slash more at the end is nothing. */
 static RtStatus read_corner(Obj *obj, RtWord word) {
-    uint32_t index[LISTS] = {0, 0, RT_NO_NORMAL};
-    const char *at = word.text, *end = at + word.length;
+    uint32_t indices[LISTS] = {0, 0, RT_NO_NORMAL};
+    const char *const end = word.text + word.length;
+    RtWord part = {.text = word.text};
     for (List list = VERTEX; list < LISTS; list++) {
-        RtWord part = {.text = at, .line = word.line};
-        while (at < end && *at != '/') at++;
-        part.length = (size_t)(at - part.text);
-        if (part.length > 0)
-            RT_TRY(resolve(obj, part, list, &index[list]));
+        int64_t index;
+        const char *at = rt_scan_integer(part.text, &index);
+        if (at < end && *at != '/') {
+            while (part.text + part.length < end && part.text[part.length] != '/') part.length++;
+            return rt_scan_fail(&obj->mesh->text, part, "an integer");
+        }
+        if (at > part.text)
+            RT_TRY(resolve(obj, index, list, &indices[list]));
         else if (list == VERTEX)
             break;
-        if (at == end) return rt_mesh_add_corner(obj->mesh, (RtMeshCorner){index[VERTEX], index[NORMAL]});
-        at++;
+        if (at == end) return rt_mesh_add_corner(obj->mesh, (RtMeshCorner){indices[VERTEX], indices[NORMAL]});
+        part.text = at + 1;
     }
     return rt_scan_fail(&obj->mesh->text, word, "v, v/vt, v//vn or v/vt/vn");
 }
@@ -159,6 +161,7 @@ static RtStatus read_statement(Obj *obj, RtWord word) {
 RtStatus rt_mesh_read_obj(RtMeshReader *r) {
     Obj obj = {.mesh = r};
     r->text.joins = true;
+    r->given_back = r->text.at;
     RT_TRY(rt_mesh_begin_text(r));
     for (;;) {
         const RtWord word = rt_scan_peek(&r->text);

@@ -303,22 +303,32 @@ static RtStatus divide(RtMeshReader *r, RtVec3d whole) {
     return RT_OK;
 }
 
-RtStatus rt_mesh_add_polygon(RtMeshReader *r) {
+static RtStatus add_fan_or_ears(RtMeshReader *r) {
     RtVec3d whole = {0, 0, 0};
-    RtStatus status = RT_OK;
     for (uint32_t i = 1; i + 1 < r->corner_count; i++) whole = rt_addd(whole, twice_area(r, 0, i, i + 1));
-    const bool fan = first_sees_all(r, whole), flat = rt_dotd(whole, whole) == 0;
-    if (r->corner_count < 3)
+    if (!first_sees_all(r, whole)) {
+        if (rt_dotd(whole, whole) > 0) return divide(r, whole);
+        RT_TRY(warn_crossing(r));
+    }
+    for (uint32_t i = 1; i + 1 < r->corner_count; i++) {
+        const RtMeshCorner triangle[3] = {r->corners[0], r->corners[i], r->corners[i + 1]};
+        RT_TRY(add_triangle(r, triangle));
+    }
+    return RT_OK;
+}
+
+RtStatus rt_mesh_add_polygon(RtMeshReader *r) {
+    RtStatus status;
+    if (r->corner_count == 3)
+        status = add_triangle(r, r->corners);
+    else if (r->corner_count > 3)
+        status = add_fan_or_ears(r);
+    else
         status = rt_mesh_warn(r, "face %u (counted from 0) has %u corners, and was left out", r->face_count,
                               r->corner_count);
-    else if (!fan)
-        status = flat ? warn_crossing(r) : divide(r, whole);
-    for (uint32_t i = 1; (fan || flat) && i + 1 < r->corner_count && status == RT_OK; i++) {
-        const RtMeshCorner triangle[3] = {r->corners[0], r->corners[i], r->corners[i + 1]};
-        status = add_triangle(r, triangle);
-    }
     r->corner_count = 0;
     r->face_count++;
+    if (r->given_back) r->given_back = rt_discard(r->given_back, r->text.at);
     return status;
 }
 
@@ -341,17 +351,17 @@ RtStatus rt_mesh_begin_text(RtMeshReader *r) {
 
 RtStatus rt_mesh_take(RtMeshReader *r, bool first, const char *wanted, RtWord *word) {
     *word = rt_scan_peek(&r->text);
-    if (word->length == 0 || (word->first && !first))
+    if (word->length == 0 || (r->text.fresh && !first))
         return rt_mesh_fail(r, "expected %s, found the end of the %s", wanted,
                             word->length ? "line" : "file");
-    if (first && !word->first) return rt_scan_fail(&r->text, *word, "the end of the line");
+    if (first && !r->text.fresh) return rt_scan_fail(&r->text, *word, "the end of the line");
     rt_scan_take(&r->text, *word);
     return RT_OK;
 }
 
 bool rt_mesh_more(RtMeshReader *r, RtWord *word) {
     *word = rt_scan_peek(&r->text);
-    const bool more = word->length > 0 && !word->first;
+    const bool more = word->length > 0 && !r->text.fresh;
     if (more) rt_scan_take(&r->text, *word);
     return more;
 }
@@ -371,16 +381,9 @@ RtStatus rt_mesh_float(const RtMeshReader *r, RtWord word, float *out) {
 }
 
 RtStatus rt_mesh_integer(const RtMeshReader *r, RtWord word, int64_t *out) {
-    enum { MOST = 18 };
-    const size_t sign = *word.text == '-' || *word.text == '+';
-    int64_t value = 0;
-    if (word.length == sign || word.length - sign > MOST) return rt_scan_fail(&r->text, word, "an integer");
-    for (size_t i = sign; i < word.length; i++) {
-        if (word.text[i] < '0' || word.text[i] > '9') return rt_scan_fail(&r->text, word, "an integer");
-        value = value * 10 + (word.text[i] - '0');
-    }
-    *out = *word.text == '-' ? -value : value;
-    return RT_OK;
+    const char *end = rt_scan_integer(word.text, out);
+    if (end > word.text && end == word.text + word.length) return RT_OK;
+    return rt_scan_fail(&r->text, word, "an integer");
 }
 
 RtStatus rt_mesh_take_vertex(RtMeshReader *r, bool first, RtVec3d *out) {
@@ -398,8 +401,7 @@ RtStatus rt_mesh_take_normal(RtMeshReader *r, RtVec3 *out) {
     RtWord word;
     for (int a = 0; a < 3; a++) {
         RT_TRY(rt_mesh_take(r, false, "the x y z of a normal", &word));
-        if (rt_scan_float(word, &out->at[a])) continue;
-        out->at[a] = NAN;
+        if (!rt_scan_float(word, &out->at[a])) out->at[a] = NAN;
     }
     return RT_OK;
 }
@@ -407,7 +409,7 @@ RtStatus rt_mesh_take_normal(RtMeshReader *r, RtVec3 *out) {
 RtStatus rt_mesh_end(RtMeshReader *r) {
     const RtWord word = rt_scan_peek(&r->text);
     if (word.length > 0) return rt_scan_fail(&r->text, word, "the end of the file");
-    if (word.first) return RT_OK;
+    if (r->text.fresh) return RT_OK;
     return rt_mesh_warn(r, "the last line has no line break: its end may be missing");
 }
 

@@ -48,15 +48,14 @@ static RtStatus add_facet(RtMeshReader *r) {
     return RT_OK;
 }
 
-static RtStatus read_binary(RtMeshReader *r, const char *bytes) {
-    const uint32_t count = rt_mesh_u32(bytes + HEADER);
-    for (uint32_t i = 0; i < count; i++) {
-        const char *facet = bytes + RT_MESH_HEAD + (size_t)FACET * i;
+static RtStatus read_binary(RtMeshReader *r) {
+    uint32_t left = rt_mesh_u32(r->text.at + HEADER);
+    for (r->text.at += RT_MESH_HEAD; left > 0; left--) {
         for (size_t k = 0; k < 3; k++)
-            RT_TRY(rt_mesh_add_vertex(r, rt_widen(rt_mesh_vector(facet + 12 + 12 * k))));
+            RT_TRY(rt_mesh_add_vertex(r, rt_widen(rt_mesh_vector(r->text.at + 12 + 12 * k))));
+        r->text.at += FACET;
         RT_TRY(add_facet(r));
     }
-    r->text.at += binary_size(bytes);
     return rt_mesh_end_binary(r);
 }
 
@@ -99,7 +98,8 @@ static RtStatus read_solid(RtMeshReader *r) {
 RtStatus rt_mesh_read_stl(RtMeshReader *r) {
     const size_t size = (size_t)(r->text.end - r->text.at);
     r->text.last = 0;
-    if (is_binary(r->text.at, size)) return read_binary(r, r->text.at);
+    r->given_back = r->text.at;
+    if (is_binary(r->text.at, size)) return read_binary(r);
     RT_TRY(rt_mesh_begin_text(r));
     do RT_TRY(read_solid(r));
     while (rt_scan_peek(&r->text).length > 0);

@@ -34,7 +34,7 @@ typedef struct Reader {
  * so far. */
 static RtStatus fail_inside(Reader *r, RtWord word, const char *wanted) {
     bool too_soon = word.length == 0 || isalpha((unsigned char)word.text[0]);
-    if (too_soon) word.line = r->text.last;
+    if (too_soon) r->text.line = r->text.last;
     return rt_scan_fail(&r->text, word, wanted);
 }
 
@@ -82,7 +82,7 @@ static RtStatus read_count(Reader *r, const char *what, uint32_t lo, uint32_t hi
 /* Is there another word on this line that might be a number? */
 static bool number_follows(Reader *r) {
     RtWord word = rt_scan_peek(&r->text);
-    return word.length > 0 && !word.first && strchr("+-.0123456789", word.text[0]) != NULL;
+    return word.length > 0 && !r->text.fresh && strchr("+-.0123456789", word.text[0]) != NULL;
 }
 
 /* ---- camera, lights, materials ---- */
@@ -280,7 +280,7 @@ static RtStatus read_statement(Reader *r) {
     } statements[] = {{"v", read_camera}, {"b", read_background}, {"l", read_light},   {"f", read_material},
                       {"s", read_sphere}, {"c", read_cone},       {"p", read_polygon}, {"pp", read_patch}};
     RtWord word = rt_scan_peek(&r->text);
-    r->statement = word.line;
+    r->statement = r->text.line;
     for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++) {
         if (!rt_scan_is(word, statements[i].word)) continue;
         rt_scan_take(&r->text, word);

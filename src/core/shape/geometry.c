@@ -235,7 +235,7 @@ static void trim_arrays(RtGeometry *g) {
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error) {
     assert(!geometry->boxes);
     trim_arrays(geometry);
-    geometry->boxes = rt_alloc(geometry->object_count, sizeof(RtBox));
+    geometry->boxes = rt_alloc_unset(geometry->object_count, sizeof(RtBox));
     if (!geometry->boxes)
         return rt_fail_memory(error, "the boxes of the objects", geometry->object_count * sizeof(RtBox));
     geometry->box = RT_EMPTY_BOX;

@@ -9,10 +9,6 @@
 #include <string.h>
 #include <strings.h>
 
-static bool is_blank(char c) {
-    return c == ' ' || (c >= '\t' && c <= '\r');
-}
-
 /* At LF, or at a CR without LF behind it. */
 static bool ends_line(const char *at) {
     return *at == '\n' || (*at == '\r' && at[1] != '\n');
@@ -25,6 +21,16 @@ static size_t joint(const RtScanner *s, const char *at) {
     return at[length] == '\n' ? length + 1 : 0;
 }
 
+/* Whether no word goes on here: at a blank, a '#', a joint or the end of the text. */
+static inline bool ends_word(const RtScanner *s, const char *at) {
+    enum { NO, YES, PERHAPS };
+    static const unsigned char ends[256] = {
+        [0] = PERHAPS, ['\\'] = PERHAPS, ['#'] = YES,  [' '] = YES, ['\t'] = YES,
+        ['\n'] = YES,  ['\v'] = YES,     ['\f'] = YES, ['\r'] = YES};
+    const unsigned char kind = ends[(unsigned char)*at];
+    return kind != NO && (kind == YES || at >= s->end || joint(s, at));
+}
+
 void rt_scan_begin(RtScanner *s, const char *text, size_t size) {
     s->at = text;
     s->end = text + size;
@@ -32,79 +38,80 @@ void rt_scan_begin(RtScanner *s, const char *text, size_t size) {
     s->fresh = true;
 }
 
-RtWord rt_scan_peek(RtScanner *s) {
-    while (s->at < s->end) {
+/* Goes to the next word. */
+static void skip(RtScanner *s) {
+    for (; s->at < s->end && ends_word(s, s->at); s->at++) {
         if (ends_line(s->at)) {
             s->line++;
             s->fresh = true;
         } else if (*s->at == '#') {
             while (s->at + 1 < s->end && !ends_line(s->at + 1)) s->at++;
-        } else if (joint(s, s->at)) {
+        } else if (*s->at == '\\') {
             s->line++;
             s->at += joint(s, s->at) - 1;
-        } else if (!is_blank(*s->at)) {
-            break;
         }
-        s->at++;
     }
-    const char *stop = s->at;
-    while (stop < s->end && !is_blank(*stop) && *stop != '#' && !joint(s, stop)) stop++;
-    return (RtWord){s->at, (size_t)(stop - s->at), s->line, s->fresh};
 }
 
-void rt_scan_take(RtScanner *s, RtWord word) {
-    s->at += word.length;
-    s->last = word.line;
-    s->fresh = false;
+RtWord rt_scan_peek(RtScanner *s) {
+    while (*s->at == ' ') s->at++;
+    if (ends_word(s, s->at)) skip(s);
+    const char *at = s->at;
+    while (!ends_word(s, at)) at++;
+    return (RtWord){s->at, (size_t)(at - s->at)};
 }
 
 void rt_scan_skip_line(RtScanner *s) {
-    for (RtWord word = rt_scan_peek(s); word.length > 0 && !word.first; word = rt_scan_peek(s))
+    for (RtWord word = rt_scan_peek(s); word.length > 0 && !s->fresh; word = rt_scan_peek(s))
         rt_scan_take(s, word);
-}
-
-bool rt_scan_is(RtWord word, const char *text) {
-    return strlen(text) == word.length && strncmp(word.text, text, word.length) == 0;
 }
 
 bool rt_scan_is_like(RtWord word, const char *text) {
     return strlen(text) == word.length && strncasecmp(word.text, text, word.length) == 0;
 }
 
-static bool is_digit(const char *at, const char *end) {
-    return at < end && *at >= '0' && *at <= '9';
+enum { MOST_DIGITS = 18 }; /* that always fit int64_t */
+
+/* Appends the digits at `at` to *value, which may overflow; returns their end. */
+static inline const char *read_digits(const char *at, uint64_t *value) {
+    uint64_t sum = *value;
+    for (unsigned digit; (digit = (unsigned)*at - '0') <= 9; at++) sum = sum * 10 + digit;
+    *value = sum;
+    return at;
+}
+
+const char *rt_scan_integer(const char *text, int64_t *out) {
+    uint64_t value = 0;
+    const char *const first = text + (*text == '-' || *text == '+'), *const end = read_digits(first, &value);
+    if (end == first || end - first > MOST_DIGITS) return text;
+    *out = *text == '-' ? -(int64_t)value : (int64_t)value;
+    return end;
 }
 
 /* Up to 15 digits and powers of ten up to 22 are exact in double, so that their product or quotient is
  * rounded once (Clinger 1990, "How to Read Floating Point Numbers Accurately", PLDI); rounding it again to
  * float32 is right unless it lies halfway between two of them. The rest is left to strtof. */
 bool rt_scan_float(RtWord word, float *out) {
-    enum { EXACT = 22, MOST = 9999 };
+    enum { EXACT = 22 };
     static const double tens[EXACT + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                            1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                            1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-    const char *at = word.text, *const end = at + word.length;
-    const bool negative = word.length > 0 && *at == '-';
-    uint64_t digits = 0, bits;
-    int exponent = 0, power = 0;
-    bool any = false;
-    if (word.length > 0 && (*at == '-' || *at == '+')) at++;
-    for (bool fraction = false;; fraction = true, at++) {
-        for (; is_digit(at, end); at++, any = true) {
-            digits = digits < 10000000000000000u ? digits * 10 + (uint64_t)(*at - '0') : UINT64_MAX;
-            exponent -= fraction;
-        }
-        if (fraction || at == end || *at != '.') break;
+    const bool negative = *word.text == '-';
+    const char *const first = word.text + (negative || *word.text == '+');
+    uint64_t digits = 0, power = 0, bits;
+    const char *const point = read_digits(first, &digits), *at = point;
+    if (*point == '.') at = read_digits(point + 1, &digits);
+    const ptrdiff_t count = at - first - (*point == '.');
+    int64_t exponent = *point == '.' ? point + 1 - at : 0;
+    if (*at == 'e' || *at == 'E') {
+        const char *const sign = at + 1, *const digit = sign + (*sign == '-' || *sign == '+');
+        at = read_digits(digit, &power);
+        if (at == digit) return false;
+        if (at - digit > MOST_DIGITS) power = UINT32_MAX;
+        exponent += *sign == '-' ? -(int64_t)power : (int64_t)power;
     }
-    if (any && at < end && (*at == 'e' || *at == 'E')) {
-        const bool below = at + 1 < end && at[1] == '-';
-        at += at + 1 < end && (at[1] == '-' || at[1] == '+') ? 2 : 1;
-        any = is_digit(at, end);
-        for (; is_digit(at, end); at++) power = power < MOST ? power * 10 + (*at - '0') : MOST;
-        exponent += below ? -power : power;
-    }
-    if (!any || at != end) return false;
-    if (digits <= 1000000000000000u && abs(exponent) <= EXACT) {
+    if (count == 0 || at != word.text + word.length) return false;
+    if (count <= MOST_DIGITS && digits <= 1000000000000000u && exponent >= -EXACT && exponent <= EXACT) {
         const double value =
             exponent < 0 ? (double)digits / tens[-exponent] : (double)digits * tens[exponent];
         memcpy(&bits, &value, sizeof bits);
@@ -128,8 +135,8 @@ const char *rt_scan_show(RtWord word, char out[RT_WORD_SHOWN]) {
 
 RtStatus rt_scan_fail(const RtScanner *s, RtWord word, const char *wanted) {
     char text[RT_WORD_SHOWN];
-    return rt_fail_at(s->error, s->path, word.line, 0, "expected %s, found %s", wanted,
-                      rt_scan_show(word, text));
+    return rt_fail_at(s->error, s->path, word.text < s->at ? s->last : s->line, 0, "expected %s, found %s",
+                      wanted, rt_scan_show(word, text));
 }
 
 RtStatus rt_scan_place(const RtScanner *s, RtStatus status, size_t line, const char *what) {

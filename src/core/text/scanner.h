@@ -7,19 +7,19 @@
 #include "core/base/status.h"
 
 #include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
 
 typedef struct RtWord {
     const char *text; /* into the file; not terminated */
     size_t length;    /* 0 at the end of the file */
-    size_t line;      /* counted from 1 */
-    bool first;       /* of its line */
 } RtWord;
 
 /* Initialise path and error, then rt_scan_begin. */
 typedef struct RtScanner {
     const char *path;
     const char *at, *end;
-    size_t line; /* of `at` */
+    size_t line; /* of `at`, which is the next word after rt_scan_peek; counted from 1 */
     size_t last; /* line of the last word taken */
     bool fresh;  /* no word of the current line was taken */
     bool joins;  /* a backslash at the end of a line joins it with the next one */
@@ -31,19 +31,29 @@ void rt_scan_begin(RtScanner *scanner, const char *text, size_t size);
 
 /* The next word, without taking it. */
 RtWord rt_scan_peek(RtScanner *scanner);
-void rt_scan_take(RtScanner *scanner, RtWord word);
+static inline void rt_scan_take(RtScanner *scanner, RtWord word) {
+    scanner->at += word.length;
+    scanner->last = scanner->line;
+    scanner->fresh = false;
+}
 /* Takes what is left of the line of the last word. */
 void rt_scan_skip_line(RtScanner *scanner);
 
-bool rt_scan_is(RtWord word, const char *text);
+static inline bool rt_scan_is(RtWord word, const char *text) {
+    return strlen(text) == word.length && memcmp(word.text, text, word.length) == 0;
+}
 /* The same in upper or lower case. */
 bool rt_scan_is_like(RtWord word, const char *text);
+
+/* Reads an integer of at most 18 digits, with a sign or without, at the beginning of `text`. Returns its end,
+ * or `text` if there is none. */
+const char *rt_scan_integer(const char *text, int64_t *out);
 
 /* Reads the whole word, a decimal number such as -1, .5 or 2.5e-3, as the float32 nearest to it, ties to
  * even. False if it is no such number, or overflows. In the locale of C (library.h sees to that). */
 bool rt_scan_float(RtWord word, float *out);
 
-/* Fails at the line of the word: "expected WANTED, found 'WORD'". */
+/* Fails at the line of the word, the next or the last one: "expected WANTED, found 'WORD'". */
 RtStatus rt_scan_fail(const RtScanner *scanner, RtWord word, const char *wanted);
 
 /* Puts the line, and `what` the message is about, in front of a message of RT_BAD_INPUT; returns `status`. */
