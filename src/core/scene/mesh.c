@@ -11,7 +11,7 @@ typedef struct Format {
     RtStatus (*read)(RtMeshReader *r);
     void (*write)(const RtGeometry *geometry, FILE *file); /* of the first RT_MESH_WRITTEN */
     uint32_t most;                                         /* triangles that can be written */
-    bool text;                                             /* never binary */
+    bool text;                                             /* begins as text */
 } Format;
 
 static const Format formats[] = {
@@ -21,7 +21,7 @@ static const Format formats[] = {
     {"glb", rt_mesh_check_glb, rt_mesh_read_glb, rt_mesh_write_glb, UINT32_MAX / (3 * sizeof(RtTriangle)),
      false},
     {"gltf", NULL, rt_mesh_read_gltf, NULL, 0, true},
-    {"off", rt_mesh_check_off, rt_mesh_read_off, NULL, 0, false},
+    {"off", NULL, rt_mesh_read_off, NULL, 0, true},
 };
 
 const char *rt_mesh_extension(size_t i) {
@@ -38,9 +38,9 @@ static RtStatus check_contents(RtMeshReader *r, const RtMeshHead *head, bool tex
                                 i == 0 ? "lfs pull" : "annex get");
     }
     if (wide) return rt_mesh_fail(r, "this is text in UTF-16: save it as UTF-8");
-    const char *start = (const char *)head->bytes, *zero = memchr(start, 0, RT_MESH_HEAD);
-    if (!text || head->size < RT_MESH_HEAD || !zero) return RT_OK;
-    return rt_file_fail_zero(r->text.path, start, zero, r->text.error);
+    if (!text || head->size == 0 || head->bytes[0]) return RT_OK;
+    const char *start = (const char *)head->bytes;
+    return rt_file_fail_zero(r->text.path, start, start, r->text.error);
 }
 
 static RtStatus check_head(const Format *format, RtMeshReader *r) {

@@ -127,9 +127,6 @@ static inline double rt_mesh_coordinate(const RtMeshReader *r, const char *text,
 /* Takes the three coordinates of a vertex from a line, the first as rt_mesh_take. */
 RtStatus rt_mesh_take_vertex(RtMeshReader *r, bool first, RtVec3d *out);
 
-/* Takes the three words of a normal; one that is no finite number becomes NaN. */
-RtStatus rt_mesh_take_normal(RtMeshReader *r, RtVec3 *out);
-
 /* Fails: the file ends after `count` of the `declared` things that its header declares. */
 RtStatus rt_mesh_fail_short(const RtMeshReader *r, uint64_t count, uint64_t declared, const char *things);
 
@@ -153,7 +150,6 @@ typedef struct RtMeshHead {
 RtStatus rt_mesh_check_ply(RtMeshReader *r, const RtMeshHead *head);
 RtStatus rt_mesh_check_stl(RtMeshReader *r, const RtMeshHead *head);
 RtStatus rt_mesh_check_glb(RtMeshReader *r, const RtMeshHead *head);
-RtStatus rt_mesh_check_off(RtMeshReader *r, const RtMeshHead *head);
 
 /* Each reads the whole file of r->text, and adds its triangles to r->scene. */
 RtStatus rt_mesh_read_obj(RtMeshReader *r);

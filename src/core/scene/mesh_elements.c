@@ -372,12 +372,6 @@ RtStatus rt_mesh_read_ply(RtMeshReader *r) {
 
 /* ---- OFF ---- */
 
-RtStatus rt_mesh_check_off(RtMeshReader *r, const RtMeshHead *head) {
-    return head->bytes[0] || head->size == 0
-               ? RT_OK
-               : rt_mesh_fail(r, "this is no OFF file: it begins with a byte of 0");
-}
-
 /* Looks ahead at the second word. */
 static bool is_binary_off(RtScanner text) {
     rt_scan_take(&text, rt_scan_peek(&text));

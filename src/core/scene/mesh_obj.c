@@ -42,12 +42,16 @@ static RtStatus read_vertex(RtMeshReader *r) {
     return rt_mesh_add_vertex(r, vertex);
 }
 
+/* A number that is not finite makes the normal unusable. */
 static RtStatus read_normal(RtMeshReader *r) {
     RtVec3 normal;
-    RtWord last;
+    RtWord word;
     uint32_t more;
-    RT_TRY(rt_mesh_take_normal(r, &normal));
-    take_rest(r, &more, &last);
+    for (int a = 0; a < 3; a++) {
+        RT_TRY(rt_mesh_take(r, false, "the x y z of a normal", &word));
+        if (!rt_scan_float(word, &normal.at[a])) normal.at[a] = NAN;
+    }
+    take_rest(r, &more, &word);
     if (more > 0) RT_TRY(rt_mesh_warn(r, "a normal has more than 3 numbers: the others are ignored"));
     return rt_mesh_add_normal(r, normal);
 }

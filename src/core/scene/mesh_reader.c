@@ -397,15 +397,6 @@ RtStatus rt_mesh_take_vertex(RtMeshReader *r, bool first, RtVec3d *out) {
     return RT_OK;
 }
 
-RtStatus rt_mesh_take_normal(RtMeshReader *r, RtVec3 *out) {
-    RtWord word;
-    for (int a = 0; a < 3; a++) {
-        RT_TRY(rt_mesh_take(r, false, "the x y z of a normal", &word));
-        if (!rt_scan_float(word, &out->at[a])) out->at[a] = NAN;
-    }
-    return RT_OK;
-}
-
 RtStatus rt_mesh_end(RtMeshReader *r) {
     const RtWord word = rt_scan_peek(&r->text);
     if (word.length > 0) return rt_scan_fail(&r->text, word, "the end of the file");
