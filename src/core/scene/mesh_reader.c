@@ -103,7 +103,7 @@ static bool first_sees_all(const RtMeshReader *r, RtVec3d whole) {
  * exact. Only a corner that is not convex can lie in an ear; those are in a grid, so that an ear is compared
  * with the few near it. A corner waits in a queue while its neighbours have changed since it was tried. */
 
-enum { NONE = UINT32_MAX };
+#define NONE UINT32_MAX
 #define FLAT 1e-6 /* of the polygon's area: a triangle that may be cut off though it is no ear */
 
 typedef struct Corner {
