@@ -380,8 +380,10 @@ static RtStatus morph(Gltf *g, const Item *primitive, const json_t *weights, con
     json_array_foreach(json_object_get(primitive->object, "targets"), i, target) {
         RT_ARENA(memory);
         const Item item = inside(primitive, target);
-        const double weight = json_number_value(json_array_get(weights, i));
+        const json_t *member = json_array_get(weights, i);
+        const double weight = json_number_value(member);
         Values deltas = {0};
+        if (member && !json_is_number(member)) return fail_item(g, primitive, "expected weights, numbers");
         if (weight != 0) RT_TRY(read_accessor(g, &item, key, 3, values->count, &memory, &deltas));
         for (size_t k = 0; deltas.at && k < 3 * (size_t)values->count; k++)
             values->at[k] += weight * deltas.at[k];
