@@ -218,12 +218,12 @@ static RtStatus load_buffer(Gltf *g, const Item *item, Buffer *buffer) {
     if (!member && item->index == 0 && g->chunk.data) {
         *buffer = g->chunk;
     } else if (!uri) {
-        RT_TRY(check_extensions(g, "extensionsUsed"));
         return fail_item(g, item, "expected uri, the data or the name of a file");
     } else if (strncmp(uri, "data:", 5) != 0) {
         RT_TRY(load_file(g, item, uri, buffer));
+    } else if (!data) {
+        return fail_item(g, item, "its data is not in base64");
     } else {
-        if (!data) return fail_item(g, item, "its data is not in base64");
         buffer->data = rt_alloc_unset(strlen(data), 1);
         if (!buffer->data) return rt_fail_memory(g->mesh->text.error, "a buffer of glTF", strlen(data));
         buffer->size = decode_base64(data + strlen(base64), buffer->data);
@@ -282,7 +282,7 @@ static RtStatus decode(Gltf *g, const Item *item, const Item *typed, size_t widt
     if (part == 0) return fail_item(g, typed, "expected componentType, 5120 to 5126 without 5124");
     if (begin + length > bytes->size)
         return fail_item(g, &view, "it ends at byte %llu of a buffer of %zu bytes",
-                         (unsigned long long)(begin + length), bytes->size);
+                         (unsigned long long)begin + length, bytes->size);
     if (stride == 0) stride = size;
     if (stride < size || skip + size > length || (length - skip - size) / stride < count - 1)
         return fail_item(g, item, "its %llu elements do not fit into the %llu bytes of bufferViews[%zu]",
