@@ -230,6 +230,9 @@ RT_TEST(accessors_without_data_are_zero_but_not_where_their_data_is_compressed) 
     assert_ok(open_without_data("3", "", &scene, error));
     ASSERT_CORNER(scene, 0, 2, 0, 0, 0);
     rt_scene_clear(&scene);
+    assert_ok(open_without_data("3", "," SPARSE "}],'extensionsUsed':['KHR_draco_mesh_compression'],'x':[{",
+                                &scene, error));
+    rt_scene_clear(&scene);
     assert_bad_input(open_without_data("3000000", "", &scene, error), "more elements, without data");
     assert_bad_input(open_without_data("3000", "", &scene, error),
                      "more elements, without data, than the file");
@@ -329,6 +332,20 @@ RT_TEST(skins_are_in_the_pose_of_their_joints) {
     ASSERT_CORNER(plain, 0, 0, 9, 0, 0); /* no joints: it moves with its node */
     REFUSED("skins[0]: it has 3 joints, but 2 matrices",
             SKINNED("1,2,2", ",'inverseBindMatrices':3") MESH("}"), numbers);
+}
+
+/* Mesh and joint are below a mirror. */
+RT_TEST(a_mirrored_skin_keeps_the_outside_out) {
+    const Numbers numbers[] = {{TRIANGLE},
+                               {BYTES("VEC4", 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)},
+                               {FLOATS("VEC4", 3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0)},
+                               {FLOATS("VEC3", 3, 0, 0, 1, 0, 0, 1, 0, 0, 1)}};
+    OWNED_SCENE scene = READ(SCENE "[{'scale':[-1,1,1],'children':[1,2]},{'mesh':0,'skin':0},{}],'skins':[{"
+                                   "'joints':[2]}]," MESH(JOINTS ",'NORMAL':3}"),
+                             numbers);
+    assert_true(scene.geometry.box.lo.x == -1 && scene.geometry.box.hi.x == 0);
+    assert_true(rt_triangle_normal(&scene.geometry.triangles[0]).z == 1);
+    assert_near(&scene.geometry.vertex_normals[0].n[0], 0, 0, 1);
 }
 
 /* The first vertex is half of each joint, in two sets; the second has too little weight, the third none. */
@@ -444,7 +461,7 @@ RT_TEST(glb_may_have_other_chunks_zeros_for_blanks_and_a_few_bytes_more) {
     assert_ok(open_glb(4, &longer, error));
     assert_int_equal(longer.warnings.count, 1);
     assert_non_null(strstr(longer.warnings.list[0].message, "4 bytes more than its header declares"));
-    assert_bad_input(open_glb(12, &damaged, error), "cut off or damaged");
+    assert_bad_input(open_glb(12, &damaged, error), "the file has 12 bytes more than its header declares");
 }
 
 RT_TESTS(mesh_gltf, NULL, NULL)
