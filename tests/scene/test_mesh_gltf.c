@@ -159,6 +159,7 @@ RT_TEST(what_cannot_be_known_is_refused_with_what_to_do) {
          "scenes[0]: its nodes[1] is also below another node"},
         {MESH("}"), "expected scenes, or nodes that place its meshes"},
         {ONE ",'scene':1", "expected the index of one of the 1 scenes"},
+        {SCENE "[{'mesh':0,'mesh':0}]," MESH("}"), "duplicate object key"},
     };
     const Numbers numbers[] = {{TRIANGLE}};
     for (size_t i = 0; i < COUNT_OF(cases); i++) REFUSED(cases[i].says, cases[i].members, numbers);
@@ -198,6 +199,11 @@ RT_TEST(sparse_accessors_replace_elements) {
     ASSERT_CORNER(scene, 0, 2, 0, 1, 0);
     const Numbers beyond[] = {numbers[0], {BYTES("SCALAR", 1, 3)}, numbers[2]};
     REFUSED("accessors[0]: it replaces element 3, but has 3", ONE, beyond);
+    const Numbers many[] = {{TRIANGLE, .accessor = ",'sparse':{'count':4,'indices':{'bufferView':1,'"
+                                                   "componentType':5121},'values':{'bufferView':2}}"},
+                            {BYTES("SCALAR", 4, 0, 1, 2, 2)},
+                            {FLOATS("VEC3", 4, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0)}};
+    REFUSED("accessors[0]: it replaces more elements than it has", ONE, many);
 }
 
 static RtStatus open_without_data(const char *count, const char *more, RtScene *scene, RtError *error) {
@@ -223,6 +229,9 @@ RT_TEST(accessors_without_data_are_zero_but_not_where_their_data_is_compressed) 
     rt_scene_clear(&scene);
     assert_ok(open_without_data("3", "", &scene, error));
     ASSERT_CORNER(scene, 0, 2, 0, 0, 0);
+    rt_scene_clear(&scene);
+    assert_ok(open_without_data("3", "," SPARSE "}],'extensionsUsed':['KHR_draco_mesh_compression'],'x':[{",
+                                &scene, error));
     rt_scene_clear(&scene);
     assert_bad_input(open_without_data("3000000", "", &scene, error), "more elements, without data");
     assert_bad_input(open_without_data("3000", "", &scene, error),
@@ -262,7 +271,15 @@ RT_TEST(quantised_positions_are_read) {
     ASSERT_CORNER(integers, 0, 1, -300, 0, 0);
 }
 
-/* ---- morph targets, skins, instances ---- */
+/* ---- nodes, morph targets, skins, instances ---- */
+
+RT_TEST(a_node_is_moved_before_its_parent_scales_it) {
+    const Numbers numbers[] = {{TRIANGLE}};
+    OWNED_SCENE scene =
+        READ(SCENE "[{'children':[1],'scale':[2,2,2]},{'mesh':0,'translation':[1,0,0]}]," MESH("}"), numbers);
+    ASSERT_CORNER(scene, 0, 0, 2, 0, 0);
+    ASSERT_CORNER(scene, 0, 1, 4, 0, 0);
+}
 
 /* The target moves each vertex by (1, 0, 0), and its normal from z to y. */
 RT_TEST(morph_targets_have_the_weights_of_the_node_or_else_of_the_mesh) {
@@ -275,6 +292,7 @@ RT_TEST(morph_targets_have_the_weights_of_the_node_or_else_of_the_mesh) {
     OWNED_SCENE rest = READ(SCENE "[{'mesh':0}]," MESH(MORPH), numbers),
                 mesh = READ(SCENE "[{'mesh':0}]," WEIGHTED, numbers),
                 node = READ(SCENE "[{'mesh':0,'weights':[1]}]," WEIGHTED, numbers);
+    REFUSED("meshes[0]: expected weights, numbers", SCENE "[{'mesh':0,'weights':['1']}]," WEIGHTED, numbers);
     ASSERT_CORNER(rest, 0, 1, 1, 0, 0);
     ASSERT_CORNER(mesh, 0, 1, 1.5, 0, 0);
     ASSERT_CORNER(node, 0, 1, 2, 0, 0);
@@ -314,6 +332,20 @@ RT_TEST(skins_are_in_the_pose_of_their_joints) {
     ASSERT_CORNER(plain, 0, 0, 9, 0, 0); /* no joints: it moves with its node */
     REFUSED("skins[0]: it has 3 joints, but 2 matrices",
             SKINNED("1,2,2", ",'inverseBindMatrices':3") MESH("}"), numbers);
+}
+
+/* Mesh and joint are below a mirror. */
+RT_TEST(a_mirrored_skin_keeps_the_outside_out) {
+    const Numbers numbers[] = {{TRIANGLE},
+                               {BYTES("VEC4", 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)},
+                               {FLOATS("VEC4", 3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0)},
+                               {FLOATS("VEC3", 3, 0, 0, 1, 0, 0, 1, 0, 0, 1)}};
+    OWNED_SCENE scene = READ(SCENE "[{'scale':[-1,1,1],'children':[1,2]},{'mesh':0,'skin':0},{}],'skins':[{"
+                                   "'joints':[2]}]," MESH(JOINTS ",'NORMAL':3}"),
+                             numbers);
+    assert_true(scene.geometry.box.lo.x == -1 && scene.geometry.box.hi.x == 0);
+    assert_true(rt_triangle_normal(&scene.geometry.triangles[0]).z == 1);
+    assert_near(&scene.geometry.vertex_normals[0].n[0], 0, 0, 1);
 }
 
 /* The first vertex is half of each joint, in two sets; the second has too little weight, the third none. */
@@ -394,11 +426,12 @@ RT_TEST(every_failed_allocation_of_a_skin_and_of_instances_is_reported) {
     "36}],"                                                                                                  \
     "\"buffers\":[{\"byteLength\":36}]}"
 
-/* Opens a GLB of three chunks, of which the second is unknown, with as many bytes behind it. */
+/* Opens a GLB of four chunks, of which the second is unknown, and the last one too many, with as many bytes
+ * behind it. */
 static RtStatus open_glb(uint32_t behind, RtScene *scene, RtError *error) {
     static const float triangle[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     const uint32_t padded = (sizeof JSON_CHUNK + 3) / 4 * 4, other = 4, binary = sizeof triangle,
-                   size = 12 + 8 + padded + 8 + other + 8 + binary, version = 2;
+                   size = 12 + 8 + padded + 8 + other + 8 + binary + 8 + other, version = 2;
     char bytes[1000] = "glTF";
     size_t at = 4;
 #define PUT(data, count) (memcpy(bytes + at, data, count), at += (count))
@@ -412,6 +445,8 @@ static RtStatus open_glb(uint32_t behind, RtScene *scene, RtError *error) {
     PUT(&binary, 4);
     PUT("BIN\0", 4);
     PUT(triangle, binary);
+    PUT(&other, 4);
+    PUT("BIN\0xxxx", 8);
 #undef PUT
     assert_int_equal(at, size);
     return open_bytes(GLB, bytes, size + behind, scene, error);
@@ -426,7 +461,7 @@ RT_TEST(glb_may_have_other_chunks_zeros_for_blanks_and_a_few_bytes_more) {
     assert_ok(open_glb(4, &longer, error));
     assert_int_equal(longer.warnings.count, 1);
     assert_non_null(strstr(longer.warnings.list[0].message, "4 bytes more than its header declares"));
-    assert_bad_input(open_glb(12, &damaged, error), "cut off or damaged");
+    assert_bad_input(open_glb(12, &damaged, error), "the file has 12 bytes more than its header declares");
 }
 
 RT_TESTS(mesh_gltf, NULL, NULL)

@@ -23,7 +23,7 @@ typedef struct Buffer {
     size_t size;
 } Buffer;
 
-/* An entry of one of the document's lists, or an object inside it; without a list the document itself. */
+/* An entry of one of the document's lists, or an object inside it. */
 typedef struct Item {
     const char *list;
     size_t index;
@@ -81,7 +81,6 @@ __attribute__((format(printf, 3, 4))) static RtStatus fail_item(const Gltf *g, c
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    if (!item->list) return rt_mesh_fail(g->mesh, "%s", message);
     return rt_mesh_fail(g->mesh, "%s[%zu]: %s", item->list, item->index, message);
 }
 
@@ -218,12 +217,12 @@ static RtStatus load_buffer(Gltf *g, const Item *item, Buffer *buffer) {
     if (!member && item->index == 0 && g->chunk.data) {
         *buffer = g->chunk;
     } else if (!uri) {
-        RT_TRY(check_extensions(g, "extensionsUsed"));
         return fail_item(g, item, "expected uri, the data or the name of a file");
     } else if (strncmp(uri, "data:", 5) != 0) {
         RT_TRY(load_file(g, item, uri, buffer));
+    } else if (!data) {
+        return fail_item(g, item, "its data is not in base64");
     } else {
-        if (!data) return fail_item(g, item, "its data is not in base64");
         buffer->data = rt_alloc_unset(strlen(data), 1);
         if (!buffer->data) return rt_fail_memory(g->mesh->text.error, "a buffer of glTF", strlen(data));
         buffer->size = decode_base64(data + strlen(base64), buffer->data);
@@ -282,15 +281,16 @@ static RtStatus decode(Gltf *g, const Item *item, const Item *typed, size_t widt
     if (part == 0) return fail_item(g, typed, "expected componentType, 5120 to 5126 without 5124");
     if (begin + length > bytes->size)
         return fail_item(g, &view, "it ends at byte %llu of a buffer of %zu bytes",
-                         (unsigned long long)(begin + length), bytes->size);
+                         (unsigned long long)begin + length, bytes->size);
     if (stride == 0) stride = size;
     if (stride < size || skip + size > length || (length - skip - size) / stride < count - 1)
         return fail_item(g, item, "its %llu elements do not fit into the %llu bytes of bufferViews[%zu]",
                          (unsigned long long)count, (unsigned long long)length, view.index);
     RT_TRY(alloc_values(g, memory, count, width, out));
-    double *next = out->at;
-    for (const char *at = bytes->data + begin + skip; next < out->at + count * width; at += stride) {
-        for (size_t k = 0; k < width; k++) *next++ = number_at(at + part * k, type, normalised);
+    const char *first = bytes->data + begin + skip;
+    for (uint64_t i = 0; i < count; i++) {
+        for (size_t k = 0; k < width; k++)
+            out->at[i * width + k] = number_at(first + stride * i + part * k, type, normalised);
     }
     return RT_OK;
 }
@@ -337,6 +337,7 @@ static RtStatus read_accessor(Gltf *g, const Item *owner, const char *key, size_
     if (!reference) return RT_OK;
     RT_TRY(find_item(g, owner, reference, "accessors", &item));
     RT_TRY(read_integer(g, &item, "count", 1, 0, &count));
+    const json_t *sparse = json_object_get(item.object, "sparse");
     const char *type = json_string_value(json_object_get(item.object, "type"));
     if (!type || strcmp(type, name) != 0)
         return fail_item(g, &item, "expected the type %s, for %s", name, key);
@@ -346,13 +347,13 @@ static RtStatus read_accessor(Gltf *g, const Item *owner, const char *key, size_
     if (json_object_get(item.object, "bufferView")) {
         RT_TRY(decode(g, &item, &item, width, count, memory, out));
     } else { /* zeros */
-        RT_TRY(check_extensions(g, "extensionsUsed"));
+        if (!sparse) RT_TRY(check_extensions(g, "extensionsUsed"));
         if (count > g->size)
             return fail_item(g, &item, "it has more elements, without data, than the file has bytes");
         RT_TRY(alloc_values(g, memory, count, width, out));
     }
     RT_TRY(count_placed(g, count));
-    return json_object_get(item.object, "sparse") ? replace_elements(g, &item, width, out) : RT_OK;
+    return sparse ? replace_elements(g, &item, width, out) : RT_OK;
 }
 
 /* ---- primitives ---- */
@@ -380,8 +381,10 @@ static RtStatus morph(Gltf *g, const Item *primitive, const json_t *weights, con
     json_array_foreach(json_object_get(primitive->object, "targets"), i, target) {
         RT_ARENA(memory);
         const Item item = inside(primitive, target);
-        const double weight = json_number_value(json_array_get(weights, i));
+        const json_t *member = json_array_get(weights, i);
+        const double weight = json_number_value(member);
         Values deltas = {0};
+        if (member && !json_is_number(member)) return fail_item(g, primitive, "expected weights, numbers");
         if (weight != 0) RT_TRY(read_accessor(g, &item, key, 3, values->count, &memory, &deltas));
         for (size_t k = 0; deltas.at && k < 3 * (size_t)values->count; k++)
             values->at[k] += weight * deltas.at[k];
@@ -389,13 +392,15 @@ static RtStatus morph(Gltf *g, const Item *primitive, const json_t *weights, con
     return RT_OK;
 }
 
-/* Moves positions and normals by the joints of a skin, into the scene. */
+/* Moves positions and normals by the joints of a skin, into the scene; the node says only, by mirroring,
+ * which side is the front. */
 static RtStatus apply_skin(Gltf *g, const Item *attributes, const Pose *pose, Values *positions,
                            Values *normals) {
     RT_ARENA(memory);
     const size_t count = positions->count;
     RtTransform *blended = rt_arena_alloc(&memory, count, sizeof *blended);
     double *sums = rt_arena_alloc(&memory, count, sizeof *sums);
+    const double sign = rt_mesh_is_mirror(&pose->transform) ? -1 : 1;
     char joints_key[24] = "JOINTS_0", weights_key[24] = "WEIGHTS_0";
     Values joints, weights;
     RT_TRY(rt_arena_check(&memory, "a skin of glTF", g->mesh->text.error));
@@ -419,11 +424,13 @@ static RtStatus apply_skin(Gltf *g, const Item *attributes, const Pose *pose, Va
         if (fabs(sums[i] - 1) > 0.01)
             RT_TRY(rt_mesh_warn(g->mesh, "a vertex has joint weights of %g in all: 1 is read, 0 leaves it",
                                 sums[i]));
-        if (sums[i] == 0) continue;
-        for (int k = 0; k < 12; k++) blended[i].m[k / 4][k % 4] /= sums[i];
+        if (sums[i] == 0) blended[i] = rt_transform_identity();
+        for (int k = 0; k < 12; k++) blended[i].m[k / 4][k % 4] *= sign / (sums[i] == 0 ? 1 : sums[i]);
         positions->vectors[i] = rt_transform_pointd(&blended[i], positions->vectors[i]);
         if (normals->at) normals->vectors[i] = rt_transform_normald(&blended[i], normals->vectors[i]);
     }
+    g->mesh->transform = rt_transform_identity();
+    for (int a = 0; a < 3; a++) g->mesh->transform.m[a][a] = sign;
     return RT_OK;
 }
 
@@ -444,9 +451,9 @@ static RtStatus add_primitive(Gltf *g, const Item *mesh, json_t *object, const P
     RT_TRY(read_accessor(g, &primitive, "indices", 1, 0, &memory, &indices));
     RT_TRY(morph(g, &primitive, pose->weights, "POSITION", &positions));
     RT_TRY(morph(g, &primitive, pose->weights, "NORMAL", &normals));
-    const bool skinned = pose->joints && json_object_get(attributes.object, "JOINTS_0");
-    if (skinned) RT_TRY(apply_skin(g, &attributes, pose, &positions, &normals));
-    r->transform = skinned ? rt_transform_identity() : pose->transform;
+    r->transform = pose->transform;
+    if (pose->joints && json_object_get(attributes.object, "JOINTS_0"))
+        RT_TRY(apply_skin(g, &attributes, pose, &positions, &normals));
     r->vertex_count = r->normal_count = 0;
     for (uint32_t i = 0; i < positions.count; i++) RT_TRY(rt_mesh_add_vertex(r, positions.vectors[i]));
     for (uint32_t i = 0; i < normals.count; i++) RT_TRY(rt_mesh_add_normal(r, rt_narrow(normals.vectors[i])));
@@ -524,7 +531,7 @@ static RtStatus place_nodes(Gltf *g) {
             if (is_index(number_of(child), (double)count)) is_child[(size_t)number_of(child)] = true;
         }
     }
-    if (reference) RT_TRY(find_item(g, &(Item){.object = g->root}, reference, "scenes", &scene));
+    if (reference) RT_TRY(find_item(g, &scene, reference, "scenes", &scene));
     if (!scene.object && !nodes)
         return rt_mesh_fail(g->mesh, "expected scenes, or nodes that place its meshes");
     if (!scene.object) RT_TRY(rt_mesh_warn(g->mesh, "it has no scene: all its nodes are read"));
@@ -650,14 +657,10 @@ enum { GLB_HEADER = 12, CHUNK_HEADER = 8 };
 
 RtStatus rt_mesh_check_glb(RtMeshReader *r, const RtMeshHead *head) {
     const unsigned char *b = head->bytes;
-    const uint32_t declared = rt_mesh_u32(b + 8);
     if (memcmp(b, "glTF", 4) != 0)
         return rt_mesh_fail(r, "this is no binary glTF: it does not begin with 'glTF'");
-    if (rt_mesh_u32(b + 4) != 2)
-        return rt_mesh_fail(r, "this is glTF %u: only 2 can be read", rt_mesh_u32(b + 4));
-    if (declared <= head->size && head->size - declared < RT_MESH_FEW_BYTES) return RT_OK;
-    return rt_mesh_fail(r, "the header declares %u bytes, but the file has %llu: it is cut off or damaged",
-                        declared, (unsigned long long)head->size);
+    if (rt_mesh_u32(b + 4) == 2) return RT_OK;
+    return rt_mesh_fail(r, "this is glTF %u: only 2 can be read", rt_mesh_u32(b + 4));
 }
 
 /* Chunks of other types are ignored. */
@@ -665,7 +668,10 @@ RtStatus rt_mesh_read_glb(RtMeshReader *r) {
     RtScanner *text = &r->text;
     const ptrdiff_t size = text->end - text->at, declared = size < GLB_HEADER ? 0 : rt_mesh_u32(text->at + 8);
     Buffer json = {0}, binary = {0};
-    if (declared < GLB_HEADER || declared > size) return rt_mesh_fail(r, "the file ends in its header");
+    if (declared < GLB_HEADER || declared > size)
+        return rt_mesh_fail(r,
+                            "the header declares %td bytes, but the file has %td: it is cut off or damaged",
+                            declared, size);
     const char *end = text->at + declared;
     text->at += GLB_HEADER;
     while (end - text->at >= CHUNK_HEADER) {

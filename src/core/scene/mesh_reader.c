@@ -49,16 +49,15 @@ RtStatus rt_mesh_add_index(RtMeshReader *r, double index) {
 
 /* ---- polygons ---- */
 
-/* True if the transform turns the surface inside out: then the order of vertices is reversed and normals,
- * which transform by cofactors, change sign. */
-static bool is_mirror(const RtTransform *t) {
-    RtVec3d x = rt_transform_column(t, 0), y = rt_transform_column(t, 1), z = rt_transform_column(t, 2);
+bool rt_mesh_is_mirror(const RtTransform *transform) {
+    RtVec3d x = rt_transform_column(transform, 0), y = rt_transform_column(transform, 1),
+            z = rt_transform_column(transform, 2);
     return rt_dotd(rt_crossd(x, y), z) < 0;
 }
 
 static RtStatus add_triangle(RtMeshReader *r, const RtMeshCorner corners[3]) {
     RtVec3 vertices[3], normals[3];
-    const bool mirror = is_mirror(&r->transform);
+    const bool mirror = rt_mesh_is_mirror(&r->transform);
     bool has_normals = true;
     for (int i = 0; i < 3; i++) {
         const RtMeshCorner corner = corners[mirror ? 2 - i : i];
