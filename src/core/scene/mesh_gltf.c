@@ -402,11 +402,12 @@ static RtStatus apply_skin(Gltf *g, const Item *attributes, const Pose *pose, Va
     double *sums = rt_arena_alloc(&memory, count, sizeof *sums);
     const double sign = rt_mesh_is_mirror(&pose->transform) ? -1 : 1;
     char joints_key[24] = "JOINTS_0", weights_key[24] = "WEIGHTS_0";
-    Values joints, weights;
     RT_TRY(rt_arena_check(&memory, "a skin of glTF", g->mesh->text.error));
     for (int set = 1; json_object_get(attributes->object, joints_key); set++) {
-        RT_TRY(read_accessor(g, attributes, joints_key, 4, positions->count, &memory, &joints));
-        RT_TRY(read_accessor(g, attributes, weights_key, 4, positions->count, &memory, &weights));
+        RT_ARENA(of_set);
+        Values joints, weights;
+        RT_TRY(read_accessor(g, attributes, joints_key, 4, positions->count, &of_set, &joints));
+        RT_TRY(read_accessor(g, attributes, weights_key, 4, positions->count, &of_set, &weights));
         for (size_t i = 0; weights.at && i < 4 * count; i++) {
             if (weights.at[i] == 0) continue;
             if (!is_index(joints.at[i], (double)pose->joint_count))
@@ -422,8 +423,10 @@ static RtStatus apply_skin(Gltf *g, const Item *attributes, const Pose *pose, Va
     }
     for (size_t i = 0; i < count; i++) {
         if (fabs(sums[i] - 1) > 0.01)
-            RT_TRY(rt_mesh_warn(g->mesh, "a vertex has joint weights of %g in all: 1 is read, 0 leaves it",
-                                sums[i]));
+            RT_TRY(rt_mesh_warn(
+                g->mesh,
+                "the joint weights of a vertex add up to %g: they are scaled to 1, or if 0, it stays",
+                sums[i]));
         if (sums[i] == 0) blended[i] = rt_transform_identity();
         for (int k = 0; k < 12; k++) blended[i].m[k / 4][k % 4] *= sign / (sums[i] == 0 ? 1 : sums[i]);
         positions->vectors[i] = rt_transform_pointd(&blended[i], positions->vectors[i]);
