@@ -355,7 +355,7 @@ RT_TEST(weights_of_all_sets_count_and_are_scaled_to_1_with_a_warning) {
                                {FLOATS("VEC4", 3, 0.25f, 0.25f, 0, 0, 0.5f, 0, 0, 0, 0, 0, 0, 0)},
                                {BYTES("VEC4", 3, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)},
                                {FLOATS("VEC4", 3, 0.5f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)}};
-    OWNED_SCENE scene = READ_WARNED("a vertex has joint weights of 0.5 in all",
+    OWNED_SCENE scene = READ_WARNED("the joint weights of a vertex add up to 0.5",
                                     SKINNED("1,2", "") MESH(JOINTS ",'JOINTS_1':3,'WEIGHTS_1':4}"), numbers);
     ASSERT_CORNER(scene, 0, 0, 0, 0, 1.5);
     ASSERT_CORNER(scene, 0, 1, 1, 0, 3);

@@ -250,14 +250,13 @@ static RtStatus alloc_values(const Gltf *g, RtArena *memory, uint64_t count, siz
 }
 
 static double number_at(const char *at, size_t type, bool normalised) {
-    const size_t size = types[type].size;
     const double largest = types[type].largest;
     uint32_t bits = 0;
     float number;
-    memcpy(&bits, at, size);
+    memcpy(&bits, at, types[type].size);
     memcpy(&number, &bits, sizeof number);
     if (type == FLOAT32) return (double)number;
-    const double value = bits <= largest ? bits : bits - ldexp(1, (int)(8 * size));
+    const double value = bits <= largest ? bits : bits - ldexp(1, (int)types[type].size * 8);
     return normalised ? fmax(value / largest, -1) : value;
 }
 
@@ -402,11 +401,12 @@ static RtStatus apply_skin(Gltf *g, const Item *attributes, const Pose *pose, Va
     double *sums = rt_arena_alloc(&memory, count, sizeof *sums);
     const double sign = rt_mesh_is_mirror(&pose->transform) ? -1 : 1;
     char joints_key[24] = "JOINTS_0", weights_key[24] = "WEIGHTS_0";
-    Values joints, weights;
     RT_TRY(rt_arena_check(&memory, "a skin of glTF", g->mesh->text.error));
     for (int set = 1; json_object_get(attributes->object, joints_key); set++) {
-        RT_TRY(read_accessor(g, attributes, joints_key, 4, positions->count, &memory, &joints));
-        RT_TRY(read_accessor(g, attributes, weights_key, 4, positions->count, &memory, &weights));
+        RT_ARENA(of_set);
+        Values joints, weights;
+        RT_TRY(read_accessor(g, attributes, joints_key, 4, positions->count, &of_set, &joints));
+        RT_TRY(read_accessor(g, attributes, weights_key, 4, positions->count, &of_set, &weights));
         for (size_t i = 0; weights.at && i < 4 * count; i++) {
             if (weights.at[i] == 0) continue;
             if (!is_index(joints.at[i], (double)pose->joint_count))
@@ -422,8 +422,10 @@ static RtStatus apply_skin(Gltf *g, const Item *attributes, const Pose *pose, Va
     }
     for (size_t i = 0; i < count; i++) {
         if (fabs(sums[i] - 1) > 0.01)
-            RT_TRY(rt_mesh_warn(g->mesh, "a vertex has joint weights of %g in all: 1 is read, 0 leaves it",
-                                sums[i]));
+            RT_TRY(rt_mesh_warn(
+                g->mesh,
+                "the joint weights of a vertex add up to %g: they are scaled to 1, or if 0, it stays",
+                sums[i]));
         if (sums[i] == 0) blended[i] = rt_transform_identity();
         for (int k = 0; k < 12; k++) blended[i].m[k / 4][k % 4] *= sign / (sums[i] == 0 ? 1 : sums[i]);
         positions->vectors[i] = rt_transform_pointd(&blended[i], positions->vectors[i]);
@@ -578,9 +580,9 @@ static RtStatus add_mesh_at(Gltf *g, const Place *place) {
     RT_ARENA(memory);
     const Item *node = &place->node, *mesh = &place->mesh;
     const json_t *weights = json_object_get(node->object, "weights"),
-                 *extension =
-                     json_object_get(json_object_get(node->object, "extensions"), "EXT_mesh_gpu_instancing");
-    const Item attributes = inside(node, json_object_get(extension, "attributes"));
+                 *extensions = json_object_get(node->object, "extensions"),
+                 *instancing = json_object_get(extensions, "EXT_mesh_gpu_instancing");
+    const Item attributes = inside(node, json_object_get(instancing, "attributes"));
     json_t *primitives = json_object_get(mesh->object, "primitives"), *primitive;
     size_t k;
     Pose pose = {.weights = weights ? weights : json_object_get(mesh->object, "weights")};
@@ -669,17 +671,15 @@ RtStatus rt_mesh_read_glb(RtMeshReader *r) {
     const ptrdiff_t size = text->end - text->at, declared = size < GLB_HEADER ? 0 : rt_mesh_u32(text->at + 8);
     Buffer json = {0}, binary = {0};
     if (declared < GLB_HEADER || declared > size)
-        return rt_mesh_fail(r,
-                            "the header declares %td bytes, but the file has %td: it is cut off or damaged",
-                            declared, size);
+        return rt_mesh_fail(r, "the header declares %td bytes, but the file has %td: cut off", declared,
+                            size);
     const char *end = text->at + declared;
     text->at += GLB_HEADER;
     while (end - text->at >= CHUNK_HEADER) {
         const Buffer chunk = {(char *)text->at + CHUNK_HEADER, rt_mesh_u32(text->at)};
         const size_t left = (size_t)(end - chunk.data);
         if (chunk.size > left)
-            return rt_mesh_fail(r, "a chunk declares %zu bytes, but the file ends after %zu", chunk.size,
-                                left);
+            return rt_mesh_fail(r, "a chunk declares %zu bytes, but has %zu", chunk.size, left);
         if (!json.data && memcmp(text->at + 4, "JSON", 4) == 0) json = chunk;
         if (!binary.data && memcmp(text->at + 4, "BIN", 4) == 0) binary = chunk;
         text->at = chunk.data + chunk.size;
