@@ -92,8 +92,8 @@ RtStatus rt_mesh_begin_text(RtMeshReader *r);
  * which transform by cofactors, change sign. */
 bool rt_mesh_is_mirror(const RtTransform *transform);
 
-/* Adds the vertex less the offset. Rejects coordinates that are not finite. */
-RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3d vertex);
+/* Adds the vertex at `place` less the offset. Rejects coordinates that are not finite. */
+RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3d place);
 /* Accepts any numbers: a normal that is not finite, with a warning, or has no length is ignored where it is
  * used. */
 RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal);

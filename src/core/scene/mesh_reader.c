@@ -135,7 +135,8 @@ static double turn_at(const Cutter *cutter, uint32_t i) {
 static void wait_for(Cutter *cutter, uint32_t i) {
     if (cutter->corners[i].waits) return;
     cutter->corners[i].waits = true;
-    cutter->queue[(cutter->first + cutter->waiting++) % cutter->count] = i;
+    const uint32_t end = cutter->first + cutter->waiting++;
+    cutter->queue[end < cutter->count ? end : end - cutter->count] = i;
 }
 
 static uint32_t voxel_of(const Cutter *cutter, int axis, double value) {
@@ -196,7 +197,7 @@ static RtStatus cut(RtMeshReader *r, Cutter *cutter, uint32_t i) {
 static RtStatus cut_ears(RtMeshReader *r, Cutter *cutter, uint32_t *start) {
     while (cutter->waiting > 0 && cutter->left > 3) {
         const uint32_t i = cutter->queue[cutter->first];
-        cutter->first = (cutter->first + 1) % cutter->count;
+        if (++cutter->first == cutter->count) cutter->first = 0;
         cutter->waiting--;
         cutter->compared++;
         cutter->corners[i].waits = false;
