@@ -120,7 +120,7 @@ RAYTALLY_API uint32_t raytally_scene_object_count(const raytally_scene *scene);
 RAYTALLY_API void raytally_scene_bounds(const raytally_scene *scene, float low[3], float high[3]);
 
 /** Size of the longest warning, with its terminating 0. */
-#define RAYTALLY_WARNING_CHARS 576
+#define RAYTALLY_WARNING_CHARS 1100
 
 /** Writes to `out` what the reader of the scene's files left out or guessed: warning number `i`, from 0, with
  * its place, and how many more there are of its kind. False, and an empty string, after the last. */

@@ -121,9 +121,7 @@ void rt_cli_take_strict(void *options, const char *text, struct argp_state *stat
 }
 
 void rt_cli_tell_warnings(const RtScene *scene) {
-    char text[RT_WARNING_TEXT];
-    for (uint32_t i = 0; i < scene->warnings.count; i++)
-        fprintf(stderr, "raytally: warning: %s\n", rt_warning_text(&scene->warnings.list[i], text));
+    rt_warnings_tell(&scene->warnings, rt_progress_notice, NULL);
 }
 
 RtStatus rt_cli_open_scene(const char *spec, RtScene *scene, RtError *error) {

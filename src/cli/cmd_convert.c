@@ -35,8 +35,12 @@ static void take_offset(void *options, const char *text, struct argp_state *stat
 static void finish(void *options, struct argp_state *state) {
     Options *o = options;
     if (!o->out) argp_error(state, "give a scene IN and a file OUT");
+    if (rt_ends_in(o->in, ".npy") != rt_ends_in(o->out, ".npy"))
+        argp_error(state, "rays (.npy) become rays, and scenes scenes");
     if (rt_ends_in(o->in, ".npy") && isnan(o->offset.x))
         argp_error(state, "rays move by the offset of their scene: give --recentre=X,Y,Z");
+    if (o->recentre && !rt_ends_in(o->in, ".npy") && !rt_scene_is_file(o->in))
+        argp_error(state, "--recentre is for files: '%s' is built in", o->in);
 }
 
 static const RtOption options[] = {

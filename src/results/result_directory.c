@@ -9,6 +9,15 @@
 
 /* ---- the manifest ---- */
 
+static json_t *lines_json(const char *text) {
+    json_t *list = json_array();
+    for (const char *end; *text; text = *end ? end + 1 : end) {
+        end = text + strcspn(text, "\n");
+        json_array_append_new(list, json_stringn(text, (size_t)(end - text)));
+    }
+    return list;
+}
+
 static json_t *scenes_json(const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
     json_t *list = json_array();
@@ -19,14 +28,14 @@ static json_t *scenes_json(const RtResults *results) {
             json_object_set_new(sets, rt_ray_kind_name(experiment->kinds[k]),
                                 rt_ray_set_json(workload, experiment->kinds[k]));
         json_array_append_new(
-            list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:b, s:I, s:o, s:s}", "scene",
+            list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:b, s:I, s:o, s:o}", "scene",
                             experiment->workloads[t].label, "scene_spec", experiment->workloads[t].spec,
                             "skipped", workload->skipped, "objects", (json_int_t)workload->objects, "hash",
                             rt_json_hex(workload->scene), "width", (json_int_t)workload->width, "height",
                             (json_int_t)workload->height, "corners", experiment->workloads[t].corners,
                             "light_from_outside", experiment->workloads[t].light_from_outside, "depth",
                             (json_int_t)experiment->workloads[t].depth, "rays", sets, "warnings",
-                            workload->warnings));
+                            lines_json(workload->warnings)));
     }
     return list;
 }

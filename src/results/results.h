@@ -30,7 +30,7 @@ typedef struct RtWorkloadResult {
     uint64_t whole_rays[RT_RAY_KIND_COUNT];       /* in the whole set, before it; 0: unknown, as in results
                                                      of version 1.0 (rt_workload_record) */
     uint64_t ray_fingerprints[RT_RAY_KIND_COUNT]; /* of the set */
-    char warnings[1024];                          /* of the scene's files, a line each (RtWarnings) */
+    char warnings[4096];                          /* of the scene's files, a line each (RtWarnings) */
 } RtWorkloadResult;
 
 /* Rendering the whole frame with an accelerator (`render`). */

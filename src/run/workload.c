@@ -172,15 +172,22 @@ RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int 
     return record(experiment, index, threads, false, *reference, scene, sets, whole_rays, error);
 }
 
-/* Says the warnings of the scene's files, and lists them. */
-static void tell_warnings(const RtWorkloadState *workload, char *out, size_t size) {
-    const RtWarnings *warnings = &workload->scene->warnings;
+static void say(void *observer, const char *text) {
+    rt_notify(observer, "%s", text);
+}
+
+/* Lists the warnings of a scene's files that fit, whole, and how many do not. */
+static void list_warnings(const RtWarnings *warnings, char *out, size_t size) {
+    enum { LAST = 40 };
     char text[RT_WARNING_TEXT];
     size_t length = 0;
     for (uint32_t i = 0; i < warnings->count; i++) {
-        rt_notify(&workload->options->observer, "warning: %s", rt_warning_text(&warnings->list[i], text));
-        if (length < size)
-            length += (size_t)snprintf(out + length, size - length, "%s%s", i > 0 ? "\n" : "", text);
+        const char *line = rt_warning_text(&warnings->list[i], text);
+        if (length + strlen(line) + LAST > size) {
+            snprintf(out + length, size - length, "%sand %u more", i > 0 ? "\n" : "", warnings->count - i);
+            return;
+        }
+        length += (size_t)snprintf(out + length, size - length, "%s%s", i > 0 ? "\n" : "", line);
     }
 }
 
@@ -208,7 +215,8 @@ static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
                        "'%s' has changed since this run was interrupted: start over with --force",
                        workload->experiment->workloads[workload->index].label);
     if (result->known) return RT_OK;
-    tell_warnings(workload, now.warnings, sizeof now.warnings);
+    rt_warnings_tell(&workload->scene->warnings, say, (void *)&workload->options->observer);
+    list_warnings(&workload->scene->warnings, now.warnings, sizeof now.warnings);
     *result = now;
     return rt_workload_tell(workload, RT_EVENT_WORKLOAD, 0, RT_RAY_PRIMARY, error);
 }

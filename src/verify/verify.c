@@ -48,12 +48,7 @@ static RtStatus open_scenes(Run *run, RtError *error) {
     if (!run->scenes) return rt_fail_memory(error, "scenes", v->scene_count * sizeof(RtScene));
     for (uint32_t i = 0; i < v->scene_count; i++) {
         RT_TRY(rt_scene_open(v->scenes[i], &run->scenes[i], error));
-        const RtWarnings *warnings = &run->scenes[i].warnings;
-        for (uint32_t k = 0; k < warnings->count; k++) {
-            char text[RT_WARNING_TEXT], notice[RT_WARNING_TEXT + 16];
-            snprintf(notice, sizeof notice, "warning: %s", rt_warning_text(&warnings->list[k], text));
-            run->observer->notice(run->observer->context, notice);
-        }
+        rt_warnings_tell(&run->scenes[i].warnings, run->observer->notice, run->observer->context);
     }
     return RT_OK;
 }

@@ -182,7 +182,8 @@ RT_TEST(a_damaged_obj_is_refused_with_its_line) {
         {"", "", "no triangle"},
         {"v 0 0 0\nv 1 0 0\n", "", "no triangle"},
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\n", "", "no triangle"},
-        {"v 0 0 0\nv nan 0 0\n", "2:", "expected a finite number that fits float32, found 'nan'"},
+        {"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "4:", "face 0 uses vertex 1, which is not finite"},
+        {"v 0 0 0\nv 1e39 0 0\nv 0 1 0\nf 1 2 3\n", "4:", "face 0 uses vertex 1, which is not finite"},
         {"v 0 0 0\nv 0 0\nv 0 1 0\n", "2:", "expected the x y z of a vertex, found the end of the line"},
         {"v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n", "4:", "exceeds"},
         {"v 0 0 0\nv 1 0 0\nf 1 2 9\n", "3:", "names vertex 9, but there are 2"},
@@ -194,9 +195,9 @@ RT_TEST(a_damaged_obj_is_refused_with_its_line) {
     ASSERT_REFUSED("obj", cases);
 }
 
-RT_TEST(what_is_no_decimal_number_or_overflows_is_refused) {
-    static const char *const words[] = {".",   "-",   "+-1", "e5", "1e",  "1e+",  "1.5.", "0x1",
-                                        "inf", "nan", "1,5", "1f", "--1", "1e5.", "1e39", "-1e999"};
+RT_TEST(what_is_no_decimal_number_is_refused) {
+    static const char *const words[] = {".",    "-",   "+-1", "e5", "1e",  "1e+",
+                                        "1.5.", "0x1", "1,5", "1f", "--1", "1e5."};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
         RtScene scene;
         char text[32], found[32];
@@ -225,7 +226,10 @@ RT_TEST(a_damaged_ply_is_refused_with_its_line) {
              "element vertex 3\n" XYZ
              "element face 1\nproperty list float int vertex_index\n") "0 0 0\n1 0 0\n0 1 0\n3.5 0 1 2\n",
          "13:", "a list has 3.5 numbers"},
-        {PLY_HEADER "0 0 inf\n", "10:", "expected a finite number"},
+        {PLY_HEADER "0 0 inf\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n",
+         "14:", "face 0 uses vertex 0, which is not finite"},
+        {PLY_HEADER PLY_VERTICES "3 0 1 2 3\n", "14:", "behind as many indices as it says, found '3'"},
+        {HEADER_OF("element vertex 1\nPROPERTY float q\n" XYZ), "4:", "expected property, element"},
         {HEADER_OF("element vertex 4000000000\n" XYZ), "7:", "ends after 0 of the 4000000000 vertices"},
         {HEADER_OF("element vertex -1\n" XYZ), "3:", "a count of at least 0"},
         {HEADER_OF("element none 999999999999\n"), "4:", "there must be one element 'vertex', not 0"},
@@ -265,13 +269,14 @@ RT_TEST(a_damaged_stl_is_refused) {
         {"solid\nfacet", "2:", "expected 'normal', found the end of the file"},
         {"solid\n" FACET("0 0 0", "1 0 0", "0 1 0"), "9:", "expected 'endsolid', found the end of the file"},
         {"solid\n" FACET("0 0 0", "1 0 0", "0 1") "endsolid\n", "6:", "found the end of the line"},
-        {"solid\n" FACET("0 0 0", "1 0 0", "0 nan 0") "endsolid\n", "6:", "found 'nan'"},
+        {"solid\n" FACET("0 0 0", "1 0 0", "0 nan 0") "endsolid\n",
+         "8:", "face 0 uses vertex 2, which is not finite"},
         {"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n",
          "6:", "expected 'vertex', found 'endloop'"},
         {"solid\nendsolid\n", "", "no triangle"},
         {STL "facet\n", "17:", "expected 'solid', found 'facet'"},
         {"a text of more than eighty-four bytes that is neither kind of STL, however long it may be, at all",
-         "", "the header declares"},
+         "", "it does not begin with 'solid'"},
     };
     ASSERT_REFUSED("stl", cases);
 }
@@ -316,7 +321,7 @@ RT_TEST(a_damaged_gltf_is_refused_with_what_is_wrong) {
          "it is more than 256 levels deep, or below itself"},
         {"{\"mesh\":0", "{\"children\":[9]", "nodes[0]: expected the index of one of the 1 nodes"},
         {"{\"mesh\":0", "{\"matrix\":[1,2]", "a list of 16 numbers"},
-        {"{\"mesh\":0", "{\"mesh\":0,\"scale\":[1e300,1,1]", "not a finite"},
+        {"{\"mesh\":0", "{\"mesh\":0,\"scale\":[1e300,1,1]", "which is not finite"},
         {"\"indices\"", "\"mode\":7,\"indices\"", "expected mode"},
         {"\"indices\"", "\"mode\":1,\"indices\"", "no triangle"},
         {"\"VEC3\"", "\"VEC3\",\"sparse\":{}", "accessors[0]: expected count"},

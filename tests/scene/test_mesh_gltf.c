@@ -359,7 +359,7 @@ RT_TEST(weights_of_all_sets_count_and_are_scaled_to_1_with_a_warning) {
                                     SKINNED("1,2", "") MESH(JOINTS ",'JOINTS_1':3,'WEIGHTS_1':4}"), numbers);
     ASSERT_CORNER(scene, 0, 0, 0, 0, 1.5);
     ASSERT_CORNER(scene, 0, 1, 1, 0, 3);
-    ASSERT_CORNER(scene, 0, 2, 0, 1, 0);
+    ASSERT_CORNER(scene, 0, 2, 9, 1, 0); /* where its node is, without a skin */
     assert_int_equal(scene.warnings.list[0].times, 2);
 }
 

@@ -56,8 +56,12 @@ RT_TEST(obj_of_other_programs_is_read) {
         {"obj", "v 0 0 0 2\nv 1 0 0 2\nv 0 1 0 1\nf 1 2 3\n", 1, "has a weight"},
         {"obj", V3 "f 1 2 3\nf 1 2\nf 1\n", 1, "face 1 (counted from 0) has 2 corners"},
         {"obj", V3 "cstype bezier\ncurv 0 1 1 2\nend\nf 1 2 3\n", 1, "curves"},
-        {"obj", V3 "l 1 2\nf 1 2 3\n", 1, "points, lines"},
+        {"obj", V3 "l 1 2\nf 1 2 3\n", 1, "points and lines"},
         {"obj", V3 "vendor_word 1 2\nf 1 2 3\n", 1, "'vendor_word'"},
+        {"obj", V3 "vn 1.#QNAN -1.#IND 0\nf 1//1 2//1 3//1\n", 1, "a normal is not finite"},
+        {"obj", V3 "mtllib C:\\\nf 1 2 3\n", 1, NULL},
+        {"obj", V3 "f 1 \\\r2 \\\r3\r", 1, NULL},
+        {"obj", V3 "v 1e39 0 0\nf 1 2 3\n", 1, "is not finite, or beyond float32"},
         {"obj", V3 "vn 0 0 1 7\nf 1//1 2//1 3//1\n", 1, "more than 3 numbers"},
     };
     ASSERT_READS(cases);
@@ -98,8 +102,16 @@ RT_TEST(ply_of_other_programs_is_read) {
          1, "is not PLY's is left out: 'Created'"},
         {"ply",
          "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 1\n" FACE
-         "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 9 9\n",
+         "property uchar red\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 9 9\n",
          1, "more numbers than the header declares"},
+        {"ply",
+         "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 1\n" FACE
+         "element edge 1\nproperty int v\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n1\n",
+         1, "are left out: edge"},
+        {"ply",
+         "ply\nformat ascii 1.0\nelement vertex 4\n" XYZ "element face 1\n" FACE
+         "end_header\n0 0 0\nnan nan nan\n1 0 0\n0 1 0\n3 0 2 3\n",
+         1, "vertex 1 (counted from 0) is not finite"},
     };
     ASSERT_READS(cases);
 }

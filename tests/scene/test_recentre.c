@@ -210,9 +210,9 @@ RT_TEST(numbers_without_an_offset_are_rounded_once) {
     write_text(PATH("obj"), "v " HALFWAY " 7 0\nv 0 8 0\nv 0 7 1\nf 1 2 3\n");
     write_text(PATH("nff"), "s " HALFWAY " 7 0 1\n");
     write_text(PATH("yaml"), "objects: [{sphere: {center: [" HALFWAY ", 7, 0], radius: 1}}]\n");
-    OWNED_SCENE obj = recentred(PATH("obj"), rt_vec3d(0, 7, 0)), nff = recentred(PATH("nff"), nowhere),
+    OWNED_SCENE obj = recentred(PATH("obj"), nowhere), nff = recentred(PATH("nff"), nowhere),
                 yaml = recentred(PATH("yaml"), rt_vec3d(0, 7, 0)), same = open_scene(PATH("nff"));
-    assert_true(obj.geometry.triangles[0].v[0].x == expected && obj.geometry.triangles[0].v[0].y == 0);
+    assert_true(obj.geometry.triangles[0].v[0].x == expected && obj.geometry.triangles[0].v[0].y == 7);
     assert_true(yaml.geometry.spheres[0].center.x == expected && yaml.geometry.spheres[0].center.y == 0);
     assert_true(nff.geometry.spheres[0].center.x == expected);
     assert_true(rt_scene_fingerprint(&nff) == rt_scene_fingerprint(&same));

@@ -20,10 +20,9 @@ RtStatus rt_warn_at(RtWarnings *warnings, const char *file, size_t line, RtError
     char words[400];
     RtError placed;
     RtWarning made = {.kind = format, .times = 1};
-    for (uint32_t i = warnings->count; i > 0; i--) {
-        RtWarning *known = &warnings->list[i - 1];
-        if (known->kind != format || strncmp(known->message, file, strlen(file)) != 0) continue;
-        known->times++;
+    for (uint32_t i = warnings->first; i < warnings->count; i++) {
+        if (warnings->list[i].kind != format) continue;
+        warnings->list[i].times++;
         return RT_OK;
     }
     va_list arguments;
@@ -32,14 +31,14 @@ RtStatus rt_warn_at(RtWarnings *warnings, const char *file, size_t line, RtError
     va_end(arguments);
     if (atomic_load(&refused)) return rt_fail_at(error, file, line, 0, "%s", words);
     rt_fail_at(&placed, file, line, 0, "%s", words);
-    snprintf(made.message, sizeof made.message, "%.*s", (int)sizeof made.message - 1, placed.message);
-    return rt_append(&warnings->list, &warnings->count, &warnings->capacity, &made, sizeof made, error);
-}
-
-RtStatus rt_warnings_append(RtWarnings *to, const RtWarnings *from, RtError *error) {
-    for (uint32_t i = 0; i < from->count; i++)
-        RT_TRY(rt_append(&to->list, &to->count, &to->capacity, &from->list[i], sizeof *from->list, error));
-    return RT_OK;
+    const size_t size = strlen(placed.message) + 1;
+    made.message = rt_alloc_unset(size, 1);
+    if (!made.message) return rt_fail_memory(error, "a warning", size);
+    memcpy(made.message, placed.message, size);
+    const RtStatus status =
+        rt_append(&warnings->list, &warnings->count, &warnings->capacity, &made, sizeof made, error);
+    if (status != RT_OK) rt_free(made.message);
+    return status;
 }
 
 const char *rt_warning_text(const RtWarning *warning, char out[RT_WARNING_TEXT]) {
@@ -51,7 +50,21 @@ const char *rt_warning_text(const RtWarning *warning, char out[RT_WARNING_TEXT])
     return out;
 }
 
+void rt_warnings_tell(const RtWarnings *warnings, void (*say)(void *context, const char *text),
+                      void *context) {
+    enum { MOST = 20 };
+    char text[RT_WARNING_TEXT], line[RT_WARNING_TEXT + 16];
+    for (uint32_t i = 0; i < warnings->count && i < MOST; i++) {
+        snprintf(line, sizeof line, "warning: %s", rt_warning_text(&warnings->list[i], text));
+        say(context, line);
+    }
+    if (warnings->count <= MOST) return;
+    snprintf(line, sizeof line, "warning: and %" PRIu32 " more", warnings->count - MOST);
+    say(context, line);
+}
+
 void rt_warnings_clear(RtWarnings *warnings) {
+    for (uint32_t i = 0; i < warnings->count; i++) rt_free(warnings->list[i].message);
     rt_free(warnings->list);
     *warnings = (RtWarnings){0};
 }

@@ -67,6 +67,7 @@ static RtStatus warn_far(RtScene *scene, const char *path, RtError *error) {
     for (uint32_t i = 0; i < g->object_count; i++)
         small += rt_box_longest_side(g->boxes[i]) * SMALL < largest;
     if (small <= g->object_count / 2) return RT_OK;
+    scene->warnings.first = scene->warnings.count;
     return rt_warn_at(&scene->warnings, path, 0, error,
                       "%u of %u objects are smaller than 10^-4 of their coordinates, of up to %.9g, where "
                       "float32 has steps of %g: `raytally convert --recentre` moves the scene before it is "

@@ -55,18 +55,14 @@ static RtStatus check_head(const Format *format, RtMeshReader *r) {
     return format->check ? format->check(r, &head) : RT_OK;
 }
 
-/* Has `offset` subtracted behind the transform: what the transform takes there is subtracted from the
- * vertices, so that little is left, and both roundings to float32 lose little. */
-static void subtract(RtMeshReader *r, RtVec3d offset) {
-    if (rt_dotd(offset, offset) == 0) return;
-    const RtVec3d x = rt_transform_column(&r->transform, 0), y = rt_transform_column(&r->transform, 1),
-                  z = rt_transform_column(&r->transform, 2), yz = rt_crossd(y, z),
-                  way = rt_subd(offset, rt_transform_column(&r->transform, 3));
-    r->offset =
-        rt_scaled(rt_vec3d(rt_dotd(yz, way), rt_dotd(rt_crossd(z, x), way), rt_dotd(rt_crossd(x, y), way)),
-                  1 / rt_dotd(x, yz));
-    const RtVec3d left = rt_subd(rt_transform_pointd(&r->transform, r->offset), offset);
-    for (int a = 0; a < 3; a++) r->transform.m[a][3] = left.at[a];
+/* With what was found instead, and the first warning, which may say why. */
+static RtStatus fail_empty(const RtMeshReader *r) {
+    const RtWarnings *warnings = &r->scene->warnings;
+    const bool warned = warnings->count > warnings->first;
+    return rt_mesh_fail(
+        r, "there is no triangle in this file (%u vertices, %u faces): a mesh needs at least one%s%.400s",
+        r->vertex_count, r->face_count, warned ? "; " : "",
+        warned ? warnings->list[warnings->first].message : "");
 }
 
 RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
@@ -80,15 +76,16 @@ RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, con
                       .scene = scene,
                       .material = material,
                       .transform = transform ? *transform : rt_transform_identity()};
-    subtract(&r, scene->offset);
+    for (int a = 0; a < 3; a++) r.transform.m[a][3] -= scene->offset.at[a];
+    r.moves = rt_lengthd(rt_transform_column(&r.transform, 3)) > 0;
+    scene->warnings.first = scene->warnings.count;
     RT_TRY(check_head(format, &r));
     RT_TRY(rt_file_read(path, RT_MESH_MAX_BYTES, &data, &size, error));
     rt_scan_begin(&r.text, data, size);
     const uint32_t before = scene->geometry.object_count;
     RtStatus status = format->read(&r);
     r.text.last = 0;
-    if (status == RT_OK && scene->geometry.object_count == before)
-        status = rt_mesh_fail(&r, "there is no triangle in this file: a mesh needs at least one");
+    if (status == RT_OK && scene->geometry.object_count == before) status = fail_empty(&r);
     rt_free(r.vertices);
     rt_free(r.normals);
     rt_free(r.corners);

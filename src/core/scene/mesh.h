@@ -31,7 +31,7 @@ const char *rt_mesh_extension(size_t i);
 
 /* Adds the triangles of `path` to the scene with `material`, moved by `transform` (NULL: in place). After
  * a failure some may remain, and the scene must be cleared. Rejects damaged files, files without triangles,
- * vertices that are not finite, and polygons that cross themselves. */
+ * and faces with vertices that are not finite. */
 RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
                         RtError *error);
 
@@ -49,8 +49,8 @@ RtStatus rt_mesh_save(const RtScene *scene, size_t i, FILE *file, RtError *error
  *
  * A reader fills `vertices`, and `normals` if there are any, and for each polygon of the file adds its
  * corners and then the polygon. The readers trust nothing in the file: every index is checked, no count
- * allocates more than a small multiple of the file's size, and a file that declares counts must have exactly
- * as much. */
+ * allocates more than a small multiple of the file's size, and a file that declares counts must have as much.
+ */
 
 /* Longer files are rejected, and documents of glTF without its buffers, which take 30 times as much memory.
  */
@@ -66,14 +66,14 @@ typedef struct RtMeshCorner {
 
 typedef struct RtMeshReader {
     RtScanner text; /* the whole file, with a 0 behind it; binary formats use path, at, end and error */
-    const char *given_back; /* the text up to here is not read again, and has no memory; NULL: it is kept */
+    const char *given_back; /* whole pages of the text up to here are not read again; NULL: all is kept */
     RtScene *scene;
     uint32_t material;
-    RtVec3d offset;        /* subtracted from each vertex, before it is rounded to float32 */
-    RtTransform transform; /* of the vertices, after that, and of the normals */
+    RtTransform transform; /* of vertices and normals, less the offset of the scene */
+    bool moves;            /* it does, so that coordinates are read as doubles and rounded behind it */
     uint32_t vertex_count, vertex_capacity, normal_count, normal_capacity, corner_count, corner_capacity;
-    RtVec3 *vertices;      /* [vertex_count] */
-    RtVec3 *normals;       /* [normal_count] */
+    RtVec3 *vertices;      /* [vertex_count] transformed */
+    RtVec3 *normals;       /* [normal_count] likewise */
     RtMeshCorner *corners; /* [corner_count] of the polygon being read */
     uint32_t face_count;   /* polygons added */
 } RtMeshReader;
@@ -92,13 +92,13 @@ RtStatus rt_mesh_begin_text(RtMeshReader *r);
  * which transform by cofactors, change sign. */
 bool rt_mesh_is_mirror(const RtTransform *transform);
 
-/* Adds the vertex at `place` less the offset. Rejects coordinates that are not finite. */
+/* Adds the vertex at `place`, transformed. Warns of one that is not finite, which no face may use. */
 RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3d place);
 /* Accepts any numbers: a normal that is not finite, with a warning, or has no length is ignored where it is
  * used. */
 RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal);
 
-/* Adds a corner; its indices must be valid. */
+/* Adds a corner; its indices must be valid. Rejects a vertex that is not finite. */
 RtStatus rt_mesh_add_corner(RtMeshReader *r, RtMeshCorner corner);
 
 /* Adds a corner with vertex `index`, counted from 0, and if there are normals, that of the same index.
@@ -118,15 +118,12 @@ bool rt_mesh_more(RtMeshReader *r, RtWord *word);
 /* Takes the word `text`, wherever it is, in upper or lower case. */
 RtStatus rt_mesh_expect(RtMeshReader *r, const char *text);
 
-/* The value of a word that must be a number. Integers have at most 18 digits. */
-RtStatus rt_mesh_float(const RtMeshReader *r, RtWord word, float *out);
+/* The value of a word that must be an integer of at most 18 digits. */
 RtStatus rt_mesh_integer(const RtMeshReader *r, RtWord word, int64_t *out);
 
-/* The coordinate of a vertex whose word is `text`: `nearest`, the float32, or if it has an offset the double.
- */
-static inline double rt_mesh_coordinate(const RtMeshReader *r, const char *text, int axis, float nearest) {
-    return r->offset.at[axis] == 0 ? (double)nearest : strtod(text, NULL);
-}
+/* The value of a word that must be a coordinate: the float32 nearest to it, or if the mesh moves, the double.
+ * NaN if it is NaN or overflows, which unused vertices may. */
+RtStatus rt_mesh_coordinate(const RtMeshReader *r, RtWord word, double *out);
 
 /* Takes the three coordinates of a vertex from a line, the first as rt_mesh_take. */
 RtStatus rt_mesh_take_vertex(RtMeshReader *r, bool first, RtVec3d *out);

@@ -10,6 +10,7 @@
  * keyword may be missing, and the counts may follow it without a blank. */
 #include "core/scene/mesh.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_ELEMENTS = 16, MOST_PROPERTIES = 256 };
@@ -105,6 +106,10 @@ static RtStatus read_element(File *file) {
         return rt_mesh_fail(file->mesh, "more than %d kinds of elements", MOST_ELEMENTS);
     Kind kind = VERTEX;
     while (kind < KINDS && !rt_scan_is(name, kind_names[kind])) kind++;
+    if (kind == UNKNOWN && count > 0)
+        RT_TRY(rt_mesh_warn(file->mesh,
+                            "elements that are neither vertices, faces nor tristrips are left out: %.*s",
+                            (int)(name.length < 40 ? name.length : 40), name.text));
     add_element(file, kind, (uint64_t)count);
     return RT_OK;
 }
@@ -152,13 +157,19 @@ static RtStatus read_property(File *file) {
     return RT_OK;
 }
 
+/* Inside an element it may be a property, without which all others are read wrongly. */
+static RtStatus left_out_line(const File *file, RtWord word) {
+    if (file->element_count > 0)
+        return rt_scan_fail(&file->mesh->text, word, "property, element, comment, obj_info or end_header");
+    return rt_mesh_warn(file->mesh, "a line of the header that is not PLY's is left out: '%.*s'",
+                        (int)(word.length < 40 ? word.length : 40), word.text);
+}
+
 static RtStatus read_header_line(File *file, RtWord word) {
     if (rt_scan_is(word, "format")) return read_format(file);
     if (rt_scan_is(word, "element")) return read_element(file);
     if (rt_scan_is(word, "property")) return read_property(file);
-    if (!rt_scan_is(word, "comment") && !rt_scan_is(word, "obj_info"))
-        RT_TRY(rt_mesh_warn(file->mesh, "a line of the header that is not PLY's is left out: '%.*s'",
-                            (int)(word.length < 40 ? word.length : 40), word.text));
+    if (!rt_scan_is(word, "comment") && !rt_scan_is(word, "obj_info")) RT_TRY(left_out_line(file, word));
     rt_scan_skip_line(&file->mesh->text);
     return RT_OK;
 }
@@ -233,30 +244,29 @@ static RtStatus take_binary(File *file, Type type, double *out) {
 }
 
 /* Integers may be written as 255.0. What is neither a coordinate nor an index need not be a number. */
-static RtStatus take_text(File *file, Type type, Use use, double *out) {
+static RtStatus take_text(File *file, Use use, double *out) {
     RtWord word = rt_scan_peek(&file->mesh->text);
     float value = NAN;
+    int64_t integer = 0;
     const bool goes_on = file->open && word.length > 0 && file->mesh->text.fresh && !file->starts;
     if (goes_on) RT_TRY(rt_mesh_warn(file->mesh, "a vertex or face goes on in the next line"));
     RT_TRY(rt_mesh_take(file->mesh, file->starts || goes_on, "a number", &word));
     file->starts = false;
-    if (use != INDICES && use > Z) {
-        if (!rt_scan_float(word, &value))
-            RT_TRY(rt_mesh_warn(file->mesh, "a property that is not used, or a normal, is no finite number"));
-    } else if (use != INDICES || type == FLOAT32 || type == FLOAT64 || memchr(word.text, '.', word.length)) {
-        RT_TRY(rt_mesh_float(file->mesh, word, &value));
-    } else {
-        int64_t integer = 0;
-        RT_TRY(rt_mesh_integer(file->mesh, word, &integer));
+    if (use <= Z) return rt_mesh_coordinate(file->mesh, word, out);
+    if (use == INDICES && rt_scan_integer(word.text, &integer) == word.text + word.length) {
         *out = (double)integer;
         return RT_OK;
     }
-    *out = use > Z ? (double)value : rt_mesh_coordinate(file->mesh, word.text, (int)use, value);
+    const bool number = rt_scan_float(word, &value);
+    if (!number && use == INDICES) return rt_scan_fail(&file->mesh->text, word, "an integer");
+    if (!number && use == OTHER && !file->skips)
+        RT_TRY(rt_mesh_warn(file->mesh, "a property that is not used is no finite number"));
+    *out = use == INDICES ? strtod(word.text, NULL) : (double)value;
     return RT_OK;
 }
 
 static RtStatus take_number(File *file, Type type, Use use, double *out) {
-    return file->binary ? take_binary(file, type, out) : take_text(file, type, use, out);
+    return file->binary ? take_binary(file, type, out) : take_text(file, use, out);
 }
 
 /* Adds the triangle of the last three corners of a strip; every other one is reversed. *length is that of the
@@ -297,6 +307,18 @@ static RtStatus take_list(File *file, const Property *property, Kind kind) {
     return adds && kind == FACE ? rt_mesh_add_polygon(mesh) : RT_OK;
 }
 
+/* Skips what the header does not declare. Behind a list of indices it could be one more. */
+static RtStatus end_line(const File *file, const Element *element, RtWord word) {
+    if (!file->open && file->properties[element->end - 1].use == INDICES)
+        return rt_scan_fail(&file->mesh->text, word,
+                            "the end of the line, behind as many indices as it says");
+    if (!file->open && !file->skips)
+        RT_TRY(
+            rt_mesh_warn(file->mesh, "a line has more numbers than the header declares: they are ignored"));
+    rt_scan_skip_line(&file->mesh->text);
+    return RT_OK;
+}
+
 static RtStatus take_element(File *file, const Element *element) {
     double at[COORDINATES] = {0}, other;
     RtWord word;
@@ -309,12 +331,7 @@ static RtStatus take_element(File *file, const Element *element) {
             RT_TRY(take_number(file, property->type, property->use,
                                property->use == OTHER ? &other : &at[property->use]));
     }
-    if (!file->binary && rt_mesh_more(file->mesh, &word)) {
-        if (!file->open)
-            RT_TRY(rt_mesh_warn(file->mesh,
-                                "a line has more numbers than the header declares: they are ignored"));
-        rt_scan_skip_line(&file->mesh->text);
-    }
+    if (!file->binary && rt_mesh_more(file->mesh, &word)) RT_TRY(end_line(file, element, word));
     if (element->kind != VERTEX) return RT_OK;
     const uint32_t normal = 1U << NX | 1U << NY | 1U << NZ;
     if ((element->uses & normal) == normal)
@@ -342,7 +359,7 @@ static RtStatus read_all(File *file) {
     if (vertices == 0) file->mesh->given_back = text->at;
     for (uint32_t i = 0; i < file->element_count; i++) {
         starts[i] = *text;
-        file->skips = i < vertices;
+        file->skips = i < vertices && file->elements[i].kind != UNKNOWN;
         RT_TRY(read_elements(file, &file->elements[i]));
     }
     file->skips = false;

@@ -360,7 +360,8 @@ static RtStatus read_accessor(Gltf *g, const Item *owner, const char *key, size_
 enum { TRIANGLES = 4, STRIP = 5, FAN = 6 };
 
 static RtStatus add_triangles(const Gltf *g, uint64_t mode, uint32_t count, const double *indices) {
-    if (count < 3 || (mode == TRIANGLES && count % 3 != 0))
+    if (count < 3) return rt_mesh_warn(g->mesh, "primitives of one or two corners are left out");
+    if (mode == TRIANGLES && count % 3 != 0)
         return rt_mesh_fail(g->mesh, "a primitive of triangles has %u corners", count);
     for (uint32_t i = 0; i + 2 < count; i += mode == TRIANGLES ? 3 : 1) {
         const uint32_t odd = mode == STRIP ? i % 2 : 0; /* every other triangle of a strip is reversed */
@@ -375,9 +376,11 @@ static RtStatus add_triangles(const Gltf *g, uint64_t mode, uint32_t count, cons
 /* Adds the weighted targets of a primitive to its positions or normals. */
 static RtStatus morph(Gltf *g, const Item *primitive, const json_t *weights, const char *key,
                       Values *values) {
+    const json_t *targets = json_object_get(primitive->object, "targets");
     json_t *target;
     size_t i;
-    json_array_foreach(json_object_get(primitive->object, "targets"), i, target) {
+    RT_TRY(count_placed(g, json_array_size(targets)));
+    json_array_foreach(targets, i, target) {
         RT_ARENA(memory);
         const Item item = inside(primitive, target);
         const json_t *member = json_array_get(weights, i);
@@ -426,7 +429,7 @@ static RtStatus apply_skin(Gltf *g, const Item *attributes, const Pose *pose, Va
                 g->mesh,
                 "the joint weights of a vertex add up to %g: they are scaled to 1, or if 0, it stays",
                 sums[i]));
-        if (sums[i] == 0) blended[i] = rt_transform_identity();
+        if (sums[i] == 0) blended[i] = pose->transform;
         for (int k = 0; k < 12; k++) blended[i].m[k / 4][k % 4] *= sign / (sums[i] == 0 ? 1 : sums[i]);
         positions->vectors[i] = rt_transform_pointd(&blended[i], positions->vectors[i]);
         if (normals->at) normals->vectors[i] = rt_transform_normald(&blended[i], normals->vectors[i]);
@@ -637,9 +640,6 @@ static RtStatus read_document(Gltf *g, const char *text, size_t size) {
 
 static RtStatus read_all(RtMeshReader *r, const char *text, size_t size, Buffer chunk) {
     Gltf g = {.mesh = r, .chunk = chunk, .size = size};
-    const RtVec3d origin = rt_transform_pointd(&r->transform, rt_scaled(r->offset, -1));
-    for (int a = 0; a < 3; a++) r->transform.m[a][3] = origin.at[a];
-    r->offset = rt_vec3d(0, 0, 0); /* of the scene: it is subtracted behind the transforms of the nodes */
     RtStatus status = read_document(&g, text, size);
     for (size_t i = 0; g.buffers && i < json_array_size(json_object_get(g.root, "buffers")); i++) {
         if (g.buffers[i].data != chunk.data) rt_free(g.buffers[i].data);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Wavefront OBJ: vertices, vertex normals and polygons. Texture coordinates are counted only, to check their
- * indices. Statements about names, materials, points and lines are skipped; curves, surfaces and unknown
+ * indices. Statements about names and materials are skipped; points, lines, curves, surfaces and unknown
  * words with a warning. Faces may stand before their vertices: the first that does has all later vertices
  * read. The format has no end mark and no counts, so a file that was cut off behind a line break cannot be
  * told from a whole one. */
@@ -101,8 +101,8 @@ static RtStatus resolve(Obj *obj, int64_t index, List list, uint32_t *out) {
         return RT_OK;
     }
     if (list == VERTEX)
-        return rt_mesh_fail(r, "the face names %s %" PRId64 ", but there are %u", names[list], index,
-                            count_of(obj, list));
+        return rt_mesh_fail(r, "the face names %s %" PRId64 ", but there are %u (counted from 1)",
+                            names[list], index, count_of(obj, list));
     *out = RT_NO_NORMAL;
     return rt_mesh_warn(r,
                         "a face names a normal or texture coordinate that does not exist (%s %" PRId64
@@ -110,7 +110,7 @@ static RtStatus resolve(Obj *obj, int64_t index, List list, uint32_t *out) {
                         names[list], index);
 }
 
-/* "v", "v/vt", "v//vn" or "v/vt/vn"; a slash more at the end is nothing. */
+/* "v", "v/vt", "v//vn" or "v/vt/vn"; a slash behind the first two is nothing. */
 static RtStatus read_corner(Obj *obj, RtWord word) {
     uint32_t indices[LISTS] = {0, 0, RT_NO_NORMAL};
     const char *const end = word.text + word.length;
@@ -143,22 +143,29 @@ static bool is_among(RtWord word, const char *const *names) {
 }
 
 static RtStatus read_statement(Obj *obj, RtWord word) {
-    static const char *const unused[] = {"o",      "g",   "s",     "mg",       "usemtl",   "mtllib", "usemap",
-                                         "maplib", "lod", "bevel", "c_interp", "d_interp", "vp",     NULL};
-    static const char *const other[] = {"p",     "l",    "cstype", "deg",   "bmat",       "step",      "curv",
-                                        "curv2", "surf", "parm",   "trim",  "hole",       "scrv",      "sp",
-                                        "end",   "con",  "ctech",  "stech", "shadow_obj", "trace_obj", NULL};
+    static const char *const names[] = {"o", "g", "usemtl", "mtllib", "usemap", "maplib", NULL};
+    static const char *const unused[] = {"s", "mg", "lod", "bevel", "c_interp", "d_interp", "vp", NULL};
+    static const char *const lines[] = {"p", "l", NULL};
+    static const char *const curved[] = {"cstype", "deg",  "bmat",  "step",       "curv",      "curv2",
+                                         "surf",   "parm", "trim",  "hole",       "scrv",      "sp",
+                                         "end",    "con",  "ctech", "stech",      "bsp",       "bzp",
+                                         "cdc",    "cdp",  "res",   "shadow_obj", "trace_obj", NULL};
+    RtMeshReader *r = obj->mesh;
     if (rt_scan_is(word, "v")) return read_listed(obj, VERTEX);
     if (rt_scan_is(word, "vn")) return read_listed(obj, NORMAL);
     if (rt_scan_is(word, "vt")) return read_listed(obj, TEXTURE);
     if (rt_scan_is(word, "f") || rt_scan_is(word, "fo")) return read_face(obj);
-    if (is_among(word, other))
-        RT_TRY(rt_mesh_warn(obj->mesh, "points, lines, curves and shadow objects are left out (%.*s)",
+    if (is_among(word, lines))
+        RT_TRY(rt_mesh_warn(r, "points and lines are left out"));
+    else if (is_among(word, curved))
+        RT_TRY(rt_mesh_warn(r, "curves and curved surfaces are left out (%.*s): export them as polygons",
                             (int)word.length, word.text));
-    else if (!is_among(word, unused))
-        RT_TRY(rt_mesh_warn(obj->mesh, "a statement that is not OBJ's is left out: '%.*s'",
+    else if (!is_among(word, names) && !is_among(word, unused))
+        RT_TRY(rt_mesh_warn(r, "a statement that is not of meshes is left out: '%.*s'",
                             (int)(word.length < 40 ? word.length : 40), word.text));
-    rt_scan_skip_line(&obj->mesh->text);
+    r->text.joins = !is_among(word, names); /* they may be paths of Windows, and end in a backslash */
+    rt_scan_skip_line(&r->text);
+    r->text.joins = true;
     return RT_OK;
 }
 

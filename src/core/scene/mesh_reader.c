@@ -10,6 +10,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 RtStatus rt_mesh_fail_short(const RtMeshReader *r, uint64_t count, uint64_t declared, const char *things) {
@@ -20,21 +21,28 @@ RtStatus rt_mesh_fail_short(const RtMeshReader *r, uint64_t count, uint64_t decl
 /* ---- vertices ---- */
 
 RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3d place) {
-    const RtVec3 vertex = rt_narrow(rt_subd(place, r->offset));
+    const RtVec3 vertex = rt_narrow(rt_transform_pointd(&r->transform, place));
     if (!rt_finite(vertex))
-        return rt_mesh_fail(r, "vertex %u (counted from 0) is not finite: (%g, %g, %g)", r->vertex_count,
-                            (double)vertex.x, (double)vertex.y, (double)vertex.z);
+        RT_TRY(rt_mesh_warn(r,
+                            "vertex %u (counted from 0) is not finite, or beyond float32: no face may use it",
+                            r->vertex_count));
     return rt_append(&r->vertices, &r->vertex_count, &r->vertex_capacity, &vertex, sizeof vertex,
                      r->text.error);
 }
 
 RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal) {
     if (!rt_finite(normal)) RT_TRY(rt_mesh_warn(r, "a normal is not finite: its triangles go without"));
+    normal =
+        rt_transform_normal(&r->transform, rt_mesh_is_mirror(&r->transform) ? rt_scale(normal, -1) : normal);
     return rt_append(&r->normals, &r->normal_count, &r->normal_capacity, &normal, sizeof normal,
                      r->text.error);
 }
 
 RtStatus rt_mesh_add_corner(RtMeshReader *r, RtMeshCorner corner) {
+    if (!rt_finite(r->vertices[corner.vertex]))
+        return rt_mesh_fail(
+            r, "face %u uses vertex %u, which is not finite, or beyond float32 (both counted from 0)",
+            r->face_count, corner.vertex);
     return rt_append(&r->corners, &r->corner_count, &r->corner_capacity, &corner, sizeof corner,
                      r->text.error);
 }
@@ -61,11 +69,10 @@ static RtStatus add_triangle(RtMeshReader *r, const RtMeshCorner corners[3]) {
     bool has_normals = true;
     for (int i = 0; i < 3; i++) {
         const RtMeshCorner corner = corners[mirror ? 2 - i : i];
-        vertices[i] = rt_transform_point(&r->transform, r->vertices[corner.vertex]);
+        vertices[i] = r->vertices[corner.vertex];
         has_normals = has_normals && corner.normal != RT_NO_NORMAL;
         if (!has_normals) continue;
-        const RtVec3 normal = r->normals[corner.normal];
-        normals[i] = rt_transform_normal(&r->transform, mirror ? rt_scale(normal, -1) : normal);
+        normals[i] = r->normals[corner.normal];
         has_normals = rt_finite(normals[i]) && rt_lengthd(rt_widen(normals[i])) > 0;
     }
     const RtStatus status =
@@ -143,8 +150,29 @@ static uint32_t voxel_of(const Cutter *cutter, int axis, double value) {
     return (uint32_t)((value - cutter->low[axis]) * cutter->scale[axis]);
 }
 
-/* Whether a corner that is not convex lies in the triangle or on its edge. Keyhole polygons visit a point
- * twice, so the points of the triangle itself do not count. */
+static bool at_same_place(const Corner *a, const Corner *b) {
+    return a->x == b->x && a->y == b->y;
+}
+
+/* Whether an edge of a corner at the place of `a` leads into the triangle. */
+static bool leads_in(const Cutter *cutter, const Corner *at, const Corner *a, const Corner *b,
+                     const Corner *c) {
+    const Corner *before = &cutter->corners[at->before], *after = &cutter->corners[at->after];
+    return (turn(a, b, before) > 0 && turn(a, before, c) > 0) ||
+           (turn(a, b, after) > 0 && turn(a, after, c) > 0);
+}
+
+/* Whether a corner that is not convex lies in the triangle or on its edge. Polygons with holes visit a point
+ * twice: at the triangle's own points it counts if the polygon goes on inside. */
+static bool blocks(const Cutter *cutter, const Corner *p, const Corner *a, const Corner *b, const Corner *c) {
+    if (p == a || p == b || p == c) return false;
+    if (at_same_place(p, a)) return leads_in(cutter, p, a, b, c);
+    if (at_same_place(p, b)) return leads_in(cutter, p, b, c, a);
+    if (at_same_place(p, c)) return leads_in(cutter, p, c, a, b);
+    return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
+}
+
+/* Whether no corner is in the way of an ear. */
 static bool is_free(Cutter *cutter, const Corner *a, const Corner *b, const Corner *c) {
     const uint32_t x0 = voxel_of(cutter, 0, fmin(a->x, fmin(b->x, c->x))),
                    x1 = voxel_of(cutter, 0, fmax(a->x, fmax(b->x, c->x))),
@@ -160,9 +188,7 @@ static bool is_free(Cutter *cutter, const Corner *a, const Corner *b, const Corn
                     *link = p->next;
                     continue;
                 }
-                const bool same = (p->x == a->x && p->y == a->y) || (p->x == b->x && p->y == b->y) ||
-                                  (p->x == c->x && p->y == c->y);
-                if (!same && turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
+                if (blocks(cutter, p, a, b, c)) return false;
                 link = &cutter->corners[*link].next;
             }
             cutter->compared++;
@@ -171,13 +197,15 @@ static bool is_free(Cutter *cutter, const Corner *a, const Corner *b, const Corn
     return true;
 }
 
-/* Whether a corner and its neighbours are an ear; or, with `flat`, a triangle of either orientation and
- * (almost) no area. */
+/* Whether a corner and its neighbours are an ear, or two of them are at the same place; or, with `flat`, a
+ * triangle of either orientation and (almost) no area. */
 static bool is_ear(Cutter *cutter, uint32_t i, bool flat) {
-    const Corner *at = &cutter->corners[i];
+    const Corner *at = &cutter->corners[i], *before = &cutter->corners[at->before],
+                 *after = &cutter->corners[at->after];
     const double area = turn_at(cutter, i);
     if (flat) return fabs(area) <= FLAT * cutter->area;
-    return area > 0 && is_free(cutter, &cutter->corners[at->before], at, &cutter->corners[at->after]);
+    if (at_same_place(before, after) || at_same_place(before, at) || at_same_place(at, after)) return true;
+    return area > 0 && is_free(cutter, before, at, after);
 }
 
 static RtStatus cut(RtMeshReader *r, Cutter *cutter, uint32_t i) {
@@ -203,9 +231,7 @@ static RtStatus cut_ears(RtMeshReader *r, Cutter *cutter, uint32_t *start) {
         cutter->corners[i].waits = false;
         if (cutter->corners[i].before == NONE) continue;
         *start = cutter->corners[i].before;
-        if (cutter->compared > cutter->most)
-            return rt_mesh_fail(r, "face %u (counted from 0), of %u corners, winds too much: split it",
-                                r->face_count, r->corner_count);
+        if (cutter->compared > cutter->most) return RT_OK;
         if (is_ear(cutter, i, false)) RT_TRY(cut(r, cutter, i));
     }
     return RT_OK;
@@ -226,7 +252,7 @@ static RtStatus cut_flat(RtMeshReader *r, Cutter *cutter, uint32_t *start) {
 
 /* Cuts until three corners are left, or nothing can be cut: a cut frees ears that are not beside it, too. */
 static RtStatus cut_all(RtMeshReader *r, Cutter *cutter, uint32_t *start) {
-    for (uint32_t left = 0; cutter->left > 3 && cutter->left != left;) {
+    for (uint32_t left = 0; cutter->left > 3 && cutter->left != left && cutter->compared <= cutter->most;) {
         left = cutter->left;
         for (uint32_t i = 0; i < cutter->count; i++)
             if (cutter->corners[i].before != NONE) wait_for(cutter, i);
@@ -375,24 +401,29 @@ RtStatus rt_mesh_expect(RtMeshReader *r, const char *text) {
     return RT_OK;
 }
 
-RtStatus rt_mesh_float(const RtMeshReader *r, RtWord word, float *out) {
-    if (rt_scan_float(word, out)) return RT_OK;
-    return rt_scan_fail(&r->text, word, "a finite number that fits float32");
-}
-
 RtStatus rt_mesh_integer(const RtMeshReader *r, RtWord word, int64_t *out) {
     const char *end = rt_scan_integer(word.text, out);
     if (end > word.text && end == word.text + word.length) return RT_OK;
     return rt_scan_fail(&r->text, word, "an integer");
 }
 
+RtStatus rt_mesh_coordinate(const RtMeshReader *r, RtWord word, double *out) {
+    float nearest;
+    char *end;
+    if (rt_scan_float(word, &nearest)) {
+        *out = r->moves ? strtod(word.text, NULL) : (double)nearest;
+        return RT_OK;
+    }
+    *out = NAN;
+    if (!isfinite(strtof(word.text, &end)) && end == word.text + word.length) return RT_OK;
+    return rt_scan_fail(&r->text, word, "a finite number that fits float32");
+}
+
 RtStatus rt_mesh_take_vertex(RtMeshReader *r, bool first, RtVec3d *out) {
     RtWord word;
-    float nearest = 0;
     for (int a = 0; a < 3; a++) {
         RT_TRY(rt_mesh_take(r, first && a == 0, "the x y z of a vertex", &word));
-        RT_TRY(rt_mesh_float(r, word, &nearest));
-        out->at[a] = rt_mesh_coordinate(r, word.text, a, nearest);
+        RT_TRY(rt_mesh_coordinate(r, word, &out->at[a]));
     }
     return RT_OK;
 }

@@ -31,7 +31,7 @@ RtStatus rt_mesh_check_stl(RtMeshReader *r, const RtMeshHead *head) {
     const bool zeros = memchr(head->bytes, 0, head->size < RT_MESH_HEAD ? (size_t)head->size : RT_MESH_HEAD);
     if (is_binary(head->bytes, head->size)) return RT_OK;
     if (begins_with_solid(head->bytes) && (!zeros || head->size < RT_MESH_HEAD)) return RT_OK;
-    if (head->size < RT_MESH_HEAD)
+    if (head->size < RT_MESH_HEAD || !zeros)
         return rt_mesh_fail(r,
                             "this is no STL file: it does not begin with 'solid', and has no binary header");
     return rt_mesh_fail(r,

@@ -305,6 +305,7 @@ static RtStatus solid_mesh(Reader *r, const RtYamlNode *n, uint32_t *index) {
     uint32_t material;
     RT_TRY(rt_yaml_keys(&r->yaml, n, "path material? transform?"));
     rt_scene_init(&scene);
+    scene.warnings = r->scene->warnings; /* lent */
     RtStatus status = rt_scene_add_material(&scene, &standard, &material, r->error);
     if (status == RT_OK) status = append_mesh(r, n, material, &scene);
     if (status == RT_OK) {
@@ -312,7 +313,8 @@ static RtStatus solid_mesh(Reader *r, const RtYamlNode *n, uint32_t *index) {
         status = rt_solid_add_mesh(&r->builder.set, g->triangles, g->triangle_count, NULL, index, r->error);
         status = rt_yaml_place(&r->yaml, status, n, "path");
     }
-    if (status == RT_OK) status = rt_warnings_append(&r->scene->warnings, &scene.warnings, r->error);
+    r->scene->warnings = scene.warnings;
+    scene.warnings = (RtWarnings){0};
     rt_scene_clear(&scene);
     return status;
 }

@@ -18,7 +18,7 @@ static bool ends_line(const char *at) {
 static size_t joint(const RtScanner *s, const char *at) {
     if (!s->joins || *at != '\\') return 0;
     size_t length = 1 + (at[1] == '\r');
-    return at[length] == '\n' ? length + 1 : 0;
+    return at[length] == '\n' ? length + 1 : at[1] == '\r' ? length : 0;
 }
 
 /* Whether no word goes on here: at a blank, a '#', a joint or the end of the text. */
@@ -57,7 +57,7 @@ RtWord rt_scan_peek(RtScanner *s) {
     while (*s->at == ' ') s->at++;
     if (ends_word(s, s->at)) skip(s);
     const char *at = s->at;
-    while (!ends_word(s, at)) at++;
+    while (!ends_word(s, at) || (*at == '#' && at > s->at && at[-1] == '.')) at++; /* 1.#QNAN of MSVC */
     return (RtWord){s->at, (size_t)(at - s->at)};
 }
 
