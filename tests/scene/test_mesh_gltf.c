@@ -3,6 +3,8 @@
  * but read, what is warned of. test_mesh.c has nodes and modes, test_mesh_damage.c what is damaged. */
 #include "scene_testing.h"
 
+#include "core/base/clock.h"
+
 #define NAME RT_BINARY_DIR "/test_mesh_gltf.gltf"
 #define GLB  RT_BINARY_DIR "/test_mesh_gltf.glb"
 
@@ -93,7 +95,8 @@ RT_TEST(what_is_odd_but_means_one_thing_is_read) {
     static const char *const documents[] = {
         ONE ",'scene':0.0",
         ONE ",'extras':[1e300,99999999999999999999999,'\\u0000',null,{'a':{}}]",
-        ONE ",'images':[{'uri':'lost.png'}],'extensionsUsed':['KHR_draco_mesh_compression','ACME_other']",
+        ONE ",'images':[{'uri':'lost.png'}],'extensionsUsed':['KHR_draco_mesh_compression','KHR_materials_"
+            "unlit']",
         SCENE "[{'mesh':0,'camera':7,'light':'x','extensions':{'ACME_x':1}}]," MESH(",'COLOR_0':9,'_X':'y'}"),
         SCENE "[{'children':[1]},{'mesh':0}]," MESH("}"),
         SCENE "[{'mesh':0},{'mesh':5}],'meshes':[{'primitives':[{'attributes':{'POSITION':0},'mode':4.0}]}]",
@@ -125,6 +128,7 @@ RT_TEST(what_is_left_out_or_guessed_is_said) {
         uint32_t triangles;
     } cases[] = {
         {ONE ",'animations':[{}]", "animations are left out", 1},
+        {ONE ",'extensionsUsed':['ACME_other']", "the extension 'ACME_other' is ignored", 1},
         {SCENE "[{'mesh':0}],'meshes':[{'primitives':[{'attributes':{'POSITION':0}},{'mode':1,'attributes':{"
                "'POSITION':0}}]}]",
          "points and lines are left out", 1},
@@ -173,6 +177,27 @@ RT_TEST(nodes_that_multiply_are_refused_soon) {
         snprintf(members + strlen(members), sizeof members - strlen(members), "{'children':[%d,%d]},", i, i);
     strcat(members, "{}]," MESH("}"));
     REFUSED("its nodes place more than 1000", members, numbers);
+}
+
+/* Each of 10,000 instances, which have no data, is moved by as many targets. */
+RT_TEST(targets_of_instances_are_refused_soon) {
+    enum { TARGETS = 10000 };
+    static char text[4 * TARGETS];
+    RtScene scene;
+    size_t size = (size_t)sprintf(
+        text,
+        "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"extensions\":"
+        "{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"SCALE\":0}}}}],\"accessors\":[{\"componentType\":"
+        "5126,"
+        "\"count\":%d,\"type\":\"VEC3\"},{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],\"meshes\":"
+        "[{\"primitives\":[{\"attributes\":{\"POSITION\":1},\"targets\":[{}",
+        TARGETS);
+    for (int i = 1; i < TARGETS; i++) size += (size_t)sprintf(text + size, ",{}");
+    strcpy(text + size, "]}]}]}");
+    write_text(NAME, text);
+    const double start = rt_thread_seconds();
+    assert_bad_input(rt_scene_open(NAME, &scene, error), "its nodes place more than 1000");
+    assert_true(rt_thread_seconds() - start < 10);
 }
 
 /* ---- accessors ---- */

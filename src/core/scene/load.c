@@ -112,7 +112,13 @@ RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtVec3d *off
                        RtError *error) {
     RtVec3d none = {{0, 0, 0}};
     if (offset && isnan(offset->x)) {
-        RT_TRY(load(path, open_named, none, false, scene, error));
+        const RtStatus status = load(path, open_named, none, false, scene, error);
+        if (status == RT_BAD_INPUT && error) { /* perhaps rounding bends a polygon there */
+            const RtError why = *error;
+            return rt_fail(error, status, "%.900s (read to find its centre: or give --recentre=X,Y,Z)",
+                           why.message);
+        }
+        RT_TRY(status);
         *offset = find_center(scene->geometry.box);
         rt_scene_clear(scene);
     }

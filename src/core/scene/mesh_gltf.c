@@ -141,27 +141,31 @@ static bool has_part(const char *name, const char *const parts[]) {
     return *parts;
 }
 
-/* Rejects compressed geometry, if the document lists its extension in `list`; of the extensions that it
- * requires also others, except those that concern the picture alone. */
-static RtStatus check_extensions(const Gltf *g, const char *list) {
+/* Rejects compressed geometry, if it `matters` and the document lists its extension in `list`. Of the others,
+ * which are neither read nor concern the picture alone, rejects those that it requires, and warns of those
+ * that it uses. */
+static RtStatus check_extensions(const Gltf *g, const char *list, bool matters) {
     static const char *const compressed[] = {"draco", "meshopt", NULL};
+    static const char *const known[] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing", NULL};
     static const char *const picture[] = {"material", "texture",   "technique", "light",
                                           "KHR_xmp",  "animation", NULL};
-    static const char *const geometry[] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing", NULL};
     const bool required = strcmp(list, "extensionsRequired") == 0;
     const json_t *one;
     size_t i;
     json_array_foreach(json_object_get(g->root, list), i, one) {
         const char *name = json_is_string(one) ? json_string_value(one) : "";
-        if (has_part(name, compressed))
+        const bool packed = has_part(name, compressed);
+        if (packed && matters)
             return rt_mesh_fail(
                 g->mesh,
                 "its geometry is compressed by %.60s, which cannot be read: export it without "
                 "compression, or decompress it with a tool such as gltf-transform",
                 name);
-        if (required && !has_part(name, picture) && !has_part(name, geometry))
+        if (packed || has_part(name, known) || has_part(name, picture)) continue;
+        if (required)
             return rt_mesh_fail(
                 g->mesh, "it requires the extension '%.60s', which cannot be read: export it without", name);
+        if (!matters) RT_TRY(rt_mesh_warn(g->mesh, "the extension '%.60s' is ignored", name));
     }
     return RT_OK;
 }
@@ -346,7 +350,7 @@ static RtStatus read_accessor(Gltf *g, const Item *owner, const char *key, size_
     if (json_object_get(item.object, "bufferView")) {
         RT_TRY(decode(g, &item, &item, width, count, memory, out));
     } else { /* zeros */
-        if (!sparse) RT_TRY(check_extensions(g, "extensionsUsed"));
+        if (!sparse) RT_TRY(check_extensions(g, "extensionsUsed", true));
         if (count > g->size)
             return fail_item(g, &item, "it has more elements, without data, than the file has bytes");
         RT_TRY(alloc_values(g, memory, count, width, out));
@@ -630,7 +634,8 @@ static RtStatus read_document(Gltf *g, const char *text, size_t size) {
     g->buffers =
         rt_arena_alloc(&g->memory, json_array_size(json_object_get(g->root, "buffers")), sizeof *g->buffers);
     RT_TRY(rt_arena_check(&g->memory, "buffers of glTF", file->error));
-    RT_TRY(check_extensions(g, "extensionsRequired"));
+    RT_TRY(check_extensions(g, "extensionsRequired", true));
+    RT_TRY(check_extensions(g, "extensionsUsed", false));
     if (json_array_size(json_object_get(g->root, "animations")) > 0)
         RT_TRY(rt_mesh_warn(g->mesh, "its animations are left out: everything is at rest"));
     RT_TRY(place_nodes(g));

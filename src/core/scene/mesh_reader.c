@@ -116,7 +116,7 @@ typedef struct Corner {
     double x, y;
     uint32_t before, after; /* the polygon that is left, a ring */
     uint32_t next;          /* in the same voxel; NONE */
-    bool waits;
+    bool waits, held;       /* in the queue; in a voxel */
 } Corner;
 
 typedef struct Cutter {
@@ -124,6 +124,8 @@ typedef struct Cutter {
     uint32_t *voxels; /* [side * side] the first corner of each */
     uint32_t *queue;  /* [count], a ring */
     uint32_t count, left, side, first, waiting;
+    uint32_t held;           /* corners in voxels */
+    uint32_t kept;           /* a corner of what is left */
     double low[2], scale[2]; /* of the grid */
     double area;             /* twice that of the whole */
     uint64_t compared, most;
@@ -147,7 +149,19 @@ static void wait_for(Cutter *cutter, uint32_t i) {
 }
 
 static uint32_t voxel_of(const Cutter *cutter, int axis, double value) {
-    return (uint32_t)((value - cutter->low[axis]) * cutter->scale[axis]);
+    const double at = (value - cutter->low[axis]) * cutter->scale[axis];
+    return at >= cutter->side ? cutter->side - 1 : at > 0 ? (uint32_t)at : 0;
+}
+
+/* Puts a corner into its voxel, if it is not convex. */
+static void hold(Cutter *cutter, uint32_t i) {
+    Corner *at = &cutter->corners[i];
+    if (at->held || at->before == NONE || turn_at(cutter, i) > 0) return;
+    uint32_t *voxel = &cutter->voxels[voxel_of(cutter, 1, at->y) * cutter->side + voxel_of(cutter, 0, at->x)];
+    at->next = *voxel;
+    at->held = true;
+    *voxel = i;
+    cutter->held++;
 }
 
 static bool at_same_place(const Corner *a, const Corner *b) {
@@ -178,14 +192,16 @@ static bool is_free(Cutter *cutter, const Corner *a, const Corner *b, const Corn
                    x1 = voxel_of(cutter, 0, fmax(a->x, fmax(b->x, c->x))),
                    y0 = voxel_of(cutter, 1, fmin(a->y, fmin(b->y, c->y))),
                    y1 = voxel_of(cutter, 1, fmax(a->y, fmax(b->y, c->y)));
-    for (uint32_t y = y0; y <= y1; y++) {
+    for (uint32_t y = y0; y <= y1 && cutter->held > 0; y++) {
         for (uint32_t x = x0; x <= x1; x++) {
             uint32_t *link = &cutter->voxels[y * cutter->side + x];
             while (*link != NONE) {
                 const Corner *p = &cutter->corners[*link];
                 cutter->compared++;
                 if (p->before == NONE || turn_at(cutter, *link) > 0) { /* cut off, or convex by now */
+                    cutter->corners[*link].held = false;
                     *link = p->next;
+                    cutter->held--;
                     continue;
                 }
                 if (blocks(cutter, p, a, b, c)) return false;
@@ -197,15 +213,18 @@ static bool is_free(Cutter *cutter, const Corner *a, const Corner *b, const Corn
     return true;
 }
 
-/* Whether a corner and its neighbours are an ear, or two of them are at the same place; or, with `flat`, a
- * triangle of either orientation and (almost) no area. */
-static bool is_ear(Cutter *cutter, uint32_t i, bool flat) {
+/* Whether the triangle of a corner and its neighbours is an ear. */
+static bool is_ear(Cutter *cutter, uint32_t i) {
+    const Corner *at = &cutter->corners[i];
+    return turn_at(cutter, i) > 0 &&
+           is_free(cutter, &cutter->corners[at->before], at, &cutter->corners[at->after]);
+}
+
+/* Whether two of the three are at the same place. */
+static bool is_spike(const Cutter *cutter, uint32_t i) {
     const Corner *at = &cutter->corners[i], *before = &cutter->corners[at->before],
                  *after = &cutter->corners[at->after];
-    const double area = turn_at(cutter, i);
-    if (flat) return fabs(area) <= FLAT * cutter->area;
-    if (at_same_place(before, after) || at_same_place(before, at) || at_same_place(at, after)) return true;
-    return area > 0 && is_free(cutter, before, at, after);
+    return at_same_place(before, after) || at_same_place(before, at) || at_same_place(at, after);
 }
 
 static RtStatus cut(RtMeshReader *r, Cutter *cutter, uint32_t i) {
@@ -215,86 +234,100 @@ static RtStatus cut(RtMeshReader *r, Cutter *cutter, uint32_t i) {
     cutter->corners[at->after].before = at->before;
     wait_for(cutter, at->before);
     wait_for(cutter, at->after);
+    cutter->kept = at->before;
     at->before = NONE;
     cutter->left--;
     return add_triangle(r, ear);
 }
 
-/* Cuts off the ears among the corners that wait, and those that become ears by it. *start becomes a corner of
- * what is left. */
-static RtStatus cut_ears(RtMeshReader *r, Cutter *cutter, uint32_t *start) {
+/* Cuts off a corner that is a spike, and those that become spikes beside it. They would stand in the way of
+ * ears, or be taken for some. */
+static RtStatus cut_spikes(RtMeshReader *r, Cutter *cutter, uint32_t i) {
+    while (cutter->left > 3 && cutter->corners[i].before != NONE && is_spike(cutter, i)) {
+        const uint32_t before = cutter->corners[i].before, after = cutter->corners[i].after;
+        RT_TRY(cut(r, cutter, i));
+        i = is_spike(cutter, before) ? before : after;
+    }
+    return RT_OK;
+}
+
+/* Cuts off the ears among the corners that wait, and those that become ears by it. */
+static RtStatus cut_ears(RtMeshReader *r, Cutter *cutter) {
     while (cutter->waiting > 0 && cutter->left > 3) {
         const uint32_t i = cutter->queue[cutter->first];
         if (++cutter->first == cutter->count) cutter->first = 0;
         cutter->waiting--;
         cutter->compared++;
         cutter->corners[i].waits = false;
-        if (cutter->corners[i].before == NONE) continue;
-        *start = cutter->corners[i].before;
         if (cutter->compared > cutter->most) return RT_OK;
-        if (is_ear(cutter, i, false)) RT_TRY(cut(r, cutter, i));
+        if (cutter->corners[i].before == NONE || !is_ear(cutter, i)) continue;
+        const uint32_t before = cutter->corners[i].before, after = cutter->corners[i].after,
+                       left = cutter->left;
+        RT_TRY(cut(r, cutter, i));
+        RT_TRY(cut_spikes(r, cutter, before));
+        RT_TRY(cut_spikes(r, cutter, after));
+        if (cutter->left == left - 1) continue;
+        hold(cutter, cutter->kept); /* without a spike it may be convex no more */
+        hold(cutter, cutter->corners[cutter->kept].after);
     }
     return RT_OK;
 }
 
-/* Cuts off what has no area. */
-static RtStatus cut_flat(RtMeshReader *r, Cutter *cutter, uint32_t *start) {
-    for (uint32_t i = *start, tries = cutter->left; tries > 0 && cutter->left > 3; tries--) {
+/* Cuts off what has (almost) no area. */
+static RtStatus cut_flat(RtMeshReader *r, Cutter *cutter) {
+    for (uint32_t i = cutter->kept, tries = cutter->left; tries > 0 && cutter->left > 3; tries--) {
         const uint32_t next = cutter->corners[i].after;
-        if (is_ear(cutter, i, true)) {
-            *start = next;
-            RT_TRY(cut(r, cutter, i));
-        }
+        if (fabs(turn_at(cutter, i)) <= FLAT * cutter->area) RT_TRY(cut(r, cutter, i));
         i = next;
     }
     return RT_OK;
 }
 
 /* Cuts until three corners are left, or nothing can be cut: a cut frees ears that are not beside it, too. */
-static RtStatus cut_all(RtMeshReader *r, Cutter *cutter, uint32_t *start) {
+static RtStatus cut_all(RtMeshReader *r, Cutter *cutter) {
     for (uint32_t left = 0; cutter->left > 3 && cutter->left != left && cutter->compared <= cutter->most;) {
         left = cutter->left;
         for (uint32_t i = 0; i < cutter->count; i++)
             if (cutter->corners[i].before != NONE) wait_for(cutter, i);
-        RT_TRY(cut_ears(r, cutter, start));
-        if (cutter->left == left) RT_TRY(cut_flat(r, cutter, start));
+        RT_TRY(cut_ears(r, cutter));
+        if (cutter->left == left) RT_TRY(cut_flat(r, cutter));
     }
     return RT_OK;
 }
 
-/* Projects the corners, and puts those that are not convex into the grid. */
-static void prepare(const RtMeshReader *r, RtVec3d whole, Cutter *cutter) {
+/* Projects the corners. */
+static void project(const RtMeshReader *r, RtVec3d whole, Cutter *cutter) {
     const RtVec3d size = rt_vec3d(fabs(whole.x), fabs(whole.y), fabs(whole.z));
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const bool swap = whole.at[axis] < 0;
     const int u = (axis + 1 + swap) % 3, v = (axis + 2 - swap) % 3;
-    double high[2];
     for (uint32_t i = 0; i < cutter->count; i++) {
         const RtVec3 at = r->vertices[r->corners[i].vertex];
-        const double place[2] = {(double)at.at[u], (double)at.at[v]};
-        cutter->corners[i] = (Corner){.x = place[0],
-                                      .y = place[1],
+        cutter->corners[i] = (Corner){.x = (double)at.at[u],
+                                      .y = (double)at.at[v],
                                       .before = (i + cutter->count - 1) % cutter->count,
                                       .after = (i + 1) % cutter->count};
-        for (int a = 0; a < 2; a++) {
-            cutter->low[a] = i == 0 ? place[a] : fmin(cutter->low[a], place[a]);
-            high[a] = i == 0 ? place[a] : fmax(high[a], place[a]);
-        }
+    }
+    cutter->area = size.at[axis];
+}
+
+/* Puts the corners that are not convex into the grid, which spans them. */
+static void fill_grid(Cutter *cutter) {
+    double high[2] = {-INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < cutter->count; i++) {
+        const Corner *at = &cutter->corners[i];
+        if (at->before == NONE || turn_at(cutter, i) > 0) continue;
+        cutter->low[0] = fmin(cutter->low[0], at->x);
+        cutter->low[1] = fmin(cutter->low[1], at->y);
+        high[0] = fmax(high[0], at->x);
+        high[1] = fmax(high[1], at->y);
     }
     for (int a = 0; a < 2; a++) {
         const double length = high[a] - cutter->low[a];
-        cutter->scale[a] = length > 0 ? (cutter->side - 0.5) / length : 0;
+        cutter->scale[a] = length > 0 ? cutter->side / length : 0;
     }
     memset(cutter->voxels, 0xff, (size_t)cutter->side * cutter->side * sizeof *cutter->voxels);
-    for (uint32_t i = 0; i < cutter->count; i++) {
-        Corner *at = &cutter->corners[i];
-        if (turn_at(cutter, i) > 0) continue;
-        uint32_t *voxel =
-            &cutter->voxels[voxel_of(cutter, 1, at->y) * cutter->side + voxel_of(cutter, 0, at->x)];
-        at->next = *voxel;
-        *voxel = i;
-    }
-    cutter->area = size.at[axis];
+    for (uint32_t i = 0; i < cutter->count; i++) hold(cutter, i);
 }
 
 static RtStatus warn_crossing(RtMeshReader *r) {
@@ -313,13 +346,21 @@ static RtStatus divide(RtMeshReader *r, RtVec3d whole) {
                      .count = count,
                      .left = count,
                      .side = side,
-                     .most = (uint64_t)count * 20000 + 1000000};
-    uint32_t first = 0;
+                     .low = {INFINITY, INFINITY},
+                     .most = (uint64_t)count * 4000 + 1000000};
     RT_TRY(rt_arena_check(&memory, "dividing a polygon", r->text.error));
-    prepare(r, whole, &cutter);
-    RT_TRY(cut_all(r, &cutter, &first));
+    project(r, whole, &cutter);
+    for (uint32_t i = 0; i < count; i++) RT_TRY(cut_spikes(r, &cutter, i));
+    fill_grid(&cutter);
+    RT_TRY(cut_all(r, &cutter));
+    const uint32_t first = cutter.kept;
     /* What is left of a polygon that does not cross itself is a triangle of its orientation. */
-    if (cutter.left > 3 || turn_at(&cutter, first) < -FLAT * cutter.area) RT_TRY(warn_crossing(r));
+    if (cutter.compared > cutter.most)
+        RT_TRY(rt_mesh_warn(
+            r, "face %u (counted from 0), of %u corners, winds too much: what was left became a fan",
+            r->face_count, r->corner_count));
+    else if (cutter.left > 3 || turn_at(&cutter, first) < -FLAT * cutter.area)
+        RT_TRY(warn_crossing(r));
     for (uint32_t i = cutter.corners[first].after; cutter.corners[i].after != first;
          i = cutter.corners[i].after) {
         const RtMeshCorner triangle[3] = {r->corners[first], r->corners[i],
