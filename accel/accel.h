@@ -116,6 +116,7 @@ typedef struct RtBoxView {
     const struct RtExtentSet *extents; /* the set that contains its extent (accel/extent.h), or NULL */
     uint32_t extent;                   /* index in that set */
     uint32_t objects;                  /* of a leaf: in its list, if RtAccelOps.shows_lists */
+    uint32_t children;                 /* shown one level deeper; 0: none, or unknown */
 } RtBoxView;
 
 /* Receives the boxes of a structure, one per call of `show`. */
@@ -218,7 +219,7 @@ struct RtAccelOps {
 
     /* Optional: shows the boxes of the structure, for pictures and distributions. If `shows_lists`, the
      * leaves shown are exactly those that `describe` counts, empty ones included, with the lengths of their
-     * lists. */
+     * lists. Parents come before their children, which come together and in the order of their parents. */
     void (*each_box)(const RtAccel *accel, RtBoxViewer viewer);
     bool shows_lists;
 

@@ -103,7 +103,7 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtGeometry *geometry = &accel->scene->geometry;
     const RtExtentSet *set = &((const RtExtents *)accel)->set;
     for (uint32_t id = 0; id < geometry->object_count; id++)
-        viewer.show(viewer.context, &(RtBoxView){&geometry->boxes[id], 0, true, set, id, 1});
+        viewer.show(viewer.context, &(RtBoxView){&geometry->boxes[id], 0, true, set, id, .objects = 1});
 }
 
 const RtAccelOps rt_extents_ops = {

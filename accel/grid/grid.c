@@ -497,16 +497,17 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtGrid *grid = (const RtGrid *)accel;
     if (grid->depth == 0) return;
-    viewer.show(viewer.context, &(RtBoxView){.box = &grid->box});
+    viewer.show(viewer.context, &(RtBoxView){.box = &grid->box, .children = grid->levels[0].voxel_count});
     for (uint32_t i = 0; i < grid->depth; i++) {
         const RtGridLevel *level = &grid->levels[i];
         for (RtGridVoxel voxel = {.level = level}; rt_grid_find_voxel(&voxel); voxel.number++) {
-            const uint32_t *first = &level->first[voxel.number];
-            viewer.show(viewer.context,
-                        &(RtBoxView){.box = &voxel.box,
-                                     .depth = i + 1,
-                                     .leaf = rt_grid_inner(level, voxel.number) == RT_GRID_LEAF,
-                                     .objects = first[1] - first[0]});
+            const uint32_t *first = &level->first[voxel.number], inner = rt_grid_inner(level, voxel.number);
+            const uint32_t *n = inner == RT_GRID_LEAF ? NULL : level[1].blocks[inner].n;
+            viewer.show(viewer.context, &(RtBoxView){.box = &voxel.box,
+                                                     .depth = i + 1,
+                                                     .leaf = !n,
+                                                     .objects = first[1] - first[0],
+                                                     .children = n ? n[0] * n[1] * n[2] : 0});
         }
     }
 }

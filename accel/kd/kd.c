@@ -126,9 +126,11 @@ RT_DEFINE_KERNELS(RtKd, search)
 static void show_node(const RtKd *kd, uint32_t index, RtBox cell, uint32_t depth, RtBoxViewer viewer) {
     const RtKdNode *node = &kd->nodes[index];
     bool leaf = rt_kd_is_leaf(node);
-    viewer.show(
-        viewer.context,
-        &(RtBoxView){.box = &cell, .depth = depth, .leaf = leaf, .objects = leaf ? rt_kd_length(node) : 0});
+    viewer.show(viewer.context, &(RtBoxView){.box = &cell,
+                                             .depth = depth,
+                                             .leaf = leaf,
+                                             .objects = leaf ? rt_kd_length(node) : 0,
+                                             .children = leaf ? 0 : 2});
     for (uint32_t c = 0; c < 2 && !leaf; c++) {
         RtBox half = rt_kd_half(cell, rt_kd_axis(node), node->split, c);
         show_node(kd, rt_kd_child(node) + c, half, depth + 1, viewer);

@@ -415,7 +415,8 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
         viewer.show(viewer.context, &(RtBoxView){.box = &tree->boxes[i],
                                                  .depth = depth,
                                                  .leaf = leaf,
-                                                 .objects = leaf ? node->count : 0});
+                                                 .objects = leaf ? node->count : 0,
+                                                 .children = leaf ? 0 : 8});
     }
 }
 

@@ -218,8 +218,8 @@ static void show_node(const RtHierarchy *self, const struct RtExtentSet *extents
     const RtNode *node = &self->nodes[index];
     uint32_t fanout = rt_node_fanout(node);
     bool leaf = rt_node_is_leaf(node);
-    viewer.show(viewer.context,
-                &(RtBoxView){&node->box, depth, leaf, extents, index, .objects = leaf ? fanout : 0});
+    viewer.show(viewer.context, &(RtBoxView){&node->box, depth, leaf, extents, index,
+                                             .objects = leaf ? fanout : 0, .children = leaf ? 0 : fanout});
     for (uint32_t i = 0; i < fanout && !leaf; i++)
         show_node(self, extents, node->first + i, depth + 1, viewer);
 }

@@ -3,6 +3,7 @@
 #include "cli/cli.h"
 #include "core/base/words.h"
 #include "measure/extents_table.h"
+#include "measure/node_file.h"
 #include "scenes/open.h"
 
 #include <inttypes.h>
@@ -10,7 +11,7 @@
 #include <string.h>
 
 typedef struct Options {
-    const char *scene;
+    const char *scene, *accel, *nodes;
     bool json, extents, every_slabs;
     uint64_t rays, seed;
 } Options;
@@ -31,16 +32,34 @@ static void take_extents(void *options, const char *text, struct argp_state *sta
         argp_error(state, "--extents: invalid value '%s': expected --extents or --extents=all", text);
 }
 
+static void finish(void *options, struct argp_state *state) {
+    const Options *o = options;
+    if (!o->accel != !o->nodes) argp_error(state, "--accel SPEC and --nodes FILE.csv belong together");
+}
+
 static const RtOption options[] = {
     {"extents", 'e', "all", RT_TO_TAKE_OPTIONAL(take_extents),
      "Also measure how tight the objects' extents are and what their tests cost: boxes, spheres, oriented "
      "boxes, 3, 7 and 13 slabs; with =all every number of slabs"},
+    {"accel", 'a', "SPEC", RT_TO_TEXT(accel), "The accelerator of --nodes"},
+    {"nodes", 0, "FILE.csv", RT_TO_PATH(nodes, ".csv"),
+     "Write the nodes or voxels of --accel, a row each: node, parent, level, leaf, children, objects in a "
+     "leaf's list, and the corners of the box"},
     {"rays", 'n', "N", RT_TO_INTEGER(rays, 1, 1000000000), "Random lines per shape for --extents (100000)"},
     {"seed", 's', "S", RT_TO_INTEGER(seed, 0, INT64_MAX), "Seed of these lines (1)"},
     RT_STRICT_OPTION,
     RT_LIMIT_OPTIONS,
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"},
     {0}};
+
+static RtStatus save_nodes(const Options *o, const RtScene *scene, RtError *error) {
+    RT_OWNED(RtAccel *, accel, rt_accel_destroy_at);
+    uint32_t count;
+    RT_TRY(rt_accel_open(o->accel, scene, &accel, error));
+    RT_TRY(rt_nodes_save(accel, o->nodes, &count, error));
+    if (!o->json) printf("%s: %u node%s of %s\n\n", o->nodes, count, rt_plural(count), o->accel);
+    return RT_OK;
+}
 
 static Counts count(const RtScene *scene) {
     const RtGeometry *g = &scene->geometry;
@@ -49,14 +68,14 @@ static Counts count(const RtScene *scene) {
                          RT_SHAPES(COUNT)
 #undef COUNT
                      }};
-    const RtVec3d centre = rt_scaled(rt_addd(rt_widen(g->box.lo), rt_widen(g->box.hi)), 0.5);
+    const RtVec3d center = rt_scaled(rt_addd(rt_widen(g->box.lo), rt_widen(g->box.hi)), 0.5);
     for (uint32_t i = 0; i < g->triangle_count; i++) {
         const RtTriangle *t = &g->triangles[i];
         const RtVec3d corner = rt_widen(t->v[0]);
         const RtVec3d area = rt_area_vector(corner, rt_widen(t->v[1]), rt_widen(t->v[2])); /* twice it */
         counts.zero_area += rt_lengthd(rt_triangle_normal(t)) == 0;
         counts.area += rt_lengthd(area) / 2;
-        counts.volume += rt_dotd(area, rt_subd(corner, centre)) / 6;
+        counts.volume += rt_dotd(area, rt_subd(corner, center)) / 6;
     }
     snprintf(counts.fingerprint, sizeof counts.fingerprint, "%016" PRIx64, rt_scene_fingerprint(scene));
     return counts;
@@ -162,6 +181,7 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
 
 const RtSyntax rt_info_syntax = {.options = options,
                                  RT_ONE_SCENE,
+                                 .finish = finish,
                                  .help =
                                      "Show what is in a scene: objects by shape, bounds, materials, lights, "
                                      "the camera, memory, and a fingerprint of everything that affects hits. "
@@ -175,6 +195,7 @@ RtStatus rt_command_info(int argc, char **argv, RtError *error) {
     if (o.json) RT_TRY(rt_cli_check_json_name(o.scene, error));
     RT_TRY(rt_cli_open_scene(o.scene, &scene, error));
     const Counts counts = count(&scene);
+    if (o.nodes) RT_TRY(save_nodes(&o, &scene, error));
     if (o.extents) RT_TRY(rt_extents_table(&table, &scene, o.every_slabs, o.rays, o.seed, error));
     if (o.json) {
         json_t *info = info_json(&scene, &counts);
