@@ -25,7 +25,7 @@ counts intersection tests exactly and measures time with intervals. Every hit
 is compared, bit for bit, with a loop over all objects, and with Embree.
 This package has the program, the library with its headers and a module of
 Python, and the guide.")
-set(CPACK_DEBIAN_PACKAGE_DEPENDS fonts-dejavu-core)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "fonts-dejavu-core, python3")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox, python3-numpy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "gcc, cmake, make, pkg-config, glmark2-data")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

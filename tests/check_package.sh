@@ -36,7 +36,7 @@ for file in bin/raytally include/raytally/raytally.h share/man/man1/raytally-ben
 done
 while read -r document; do check_links "$document"; done < <(find "$work/root" -name '*.md')
 needs=$(dpkg-deb -f "$deb" Depends)
-for library in libc6 libcairo2 libgmp10 libjansson4 libyaml-0-2 fonts-dejavu-core; do
+for library in libc6 libcairo2 libgmp10 libjansson4 libyaml-0-2 fonts-dejavu-core python3; do
     [[ $needs == *"$library"* ]] || complain "the .deb depends on $needs, not on $library"
 done
 if command -v lintian >/dev/null; then
