@@ -119,13 +119,9 @@ def load_plugin(path: str | os.PathLike) -> None:
     _call("plugin_load", os.fsencode(path))
 
 
-class _Handle(ctypes.c_void_p):
-    """The address of an object of the library."""
-
-
-def _new(what: str, needs: _Handle | None, function: str, *arguments: Any) -> _Handle:
+def _new(what: str, needs: ctypes.c_void_p | None, function: str, *arguments: Any) -> ctypes.c_void_p:
     """Makes an object that is freed when its handle goes, and before `needs`, even if both are in a cycle."""
-    handle = _Handle()
+    handle = ctypes.c_void_p()
     _call(function, *arguments, ctypes.byref(handle))
     address, free = handle.value, getattr(_library, f"raytally_{what}_free")
     weakref.finalize(handle, lambda _: free(address), needs).atexit = False  # when threads may still trace
@@ -133,7 +129,8 @@ def _new(what: str, needs: _Handle | None, function: str, *arguments: Any) -> _H
 
 
 class Rays:
-    """Valid rays of one kind. `numpy.asarray(rays)` is a view of them: float32, (N, 8), read-only."""
+    """Valid rays of one `kind`. `numpy.asarray(rays)` is a view of them: float32, (N, 8), read-only; rays[i] is of that
+    view. `fingerprint` is a hash: equal rays have the same on every machine."""
 
     def __init__(self, rays: ArrayLike, kind: str = "random", *, _recording: tuple = ()) -> None:
         """Copies and checks the rays of an array. `kind` is one of KINDS."""
@@ -151,6 +148,9 @@ class Rays:
 
     def __len__(self) -> int:
         return _library.raytally_rays_count(self._handle)
+
+    def __getitem__(self, index: Any) -> Any:
+        return numpy.asarray(self)[index]
 
     @property
     def __array_interface__(self) -> dict[str, Any]:

@@ -230,6 +230,7 @@ class Lifetimes(Case):
         gc.collect()
         self.assertEqual(accel.nearest(view).tolist(), [(5, 0)])
         self.assertEqual(accel.scene.object_count, 2)
+        self.assertEqual(raytally.Rays(view)[0, 2], 5)
         with self.assertRaises(ValueError):
             view[0] = 0
 
