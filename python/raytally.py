@@ -69,7 +69,6 @@ KINDS = tuple(name.decode() for name in map(_library.raytally_ray_kind_name, ran
 """The kinds of rays. "shadow" and "occlusion" rays ask whether there is a hit, all others for the nearest one."""
 HIT = numpy.dtype([("t", "f4"), ("object", "i4")])
 COUNTS = numpy.dtype([(name, "u8") for name in COUNTERS])
-"""What a ray costs: a field for each of COUNTERS."""
 ESTIMATE = numpy.dtype({"names": ["median", "low", "high", "least", "coverage"], "formats": ["f8"] * 5, "itemsize": 64})
 """The median of measurements, an interval that holds it with the probability `coverage`, the least measurement."""
 TIME = numpy.dtype({"names": ["seconds", "ratio"], "formats": [ESTIMATE, ESTIMATE], "itemsize": 192})
@@ -105,7 +104,8 @@ def _array(values: ArrayLike | None, columns: int, what: str, dtype: str = "floa
     integers = array.dtype.kind in "iu" and (array.size == 0 or 0 <= array.min() <= array.max() < 2**32)
     floats = isinstance(values, (list, tuple)) or numpy.can_cast(array.dtype, "float32")
     if not (integers if dtype == "uint32" else floats):
-        raise RaytallyError(f"{what}: numbers of type {array.dtype}: expected {dtype}, as from array.astype('{dtype}')")
+        wanted = "integers in 0..2^32-1" if dtype == "uint32" else "float32, as from array.astype('float32')"
+        raise RaytallyError(f"{what}: numbers of type {array.dtype}: expected {wanted}")
     return numpy.ascontiguousarray(array, dtype)
 
 
@@ -281,8 +281,8 @@ class Accelerator:
         return out
 
     def counts(self, rays: RaysLike, threads: int = 0) -> NDArray:
-        """What each ray costs, traced by itself: (N,) of COUNTS, whose sums `raytally bench` prints, on every machine.
-        The kind of rays is their query: an array asks for nearest hits, `Rays(array, "occlusion")` for any."""
+        """What each ray costs, traced by itself: (N,) of COUNTS, a field for each of COUNTERS. `raytally bench` prints the
+        means. The kind of rays is their query: arrays ask for nearest hits, `Rays(array, "occlusion")` for any."""
         rays = _rays(rays)
         out = numpy.empty(len(rays), COUNTS)
         _call("count_each", self._handle, rays._handle, threads, out.ctypes.data, len(COUNTERS))

@@ -176,8 +176,8 @@ class Arrays(Case):
         rays[1, 4:7] = 0
         self.assert_refused(r"ray 1 \(the first is 0\) is not valid", accel.nearest, rays)
         for corner in (-1, 2**32):
-            self.assert_refused(r"expected uint32", raytally.Scene.from_arrays, [[0, 0, 0]], [[0, 0, corner]])
-        self.assert_refused("float64: expected uint32", raytally.Scene.from_arrays, [[0, 0, 0]], [[0, 0, 0.5]])
+            self.assert_refused(r"expected integers in 0\.\.2\^32-1", raytally.Scene.from_arrays, [[0, 0, 0]], [[0, 0, corner]])
+        self.assert_refused("float64: expected integers", raytally.Scene.from_arrays, [[0, 0, 0]], [[0, 0, 0.5]])
         self.assert_refused("corner 2 is vertex 3", raytally.Scene.from_arrays, [[0, 0, 0]] * 3, [[0, 1, 3]])
         self.assert_refused("sphere 0", raytally.Scene.from_arrays, spheres=[[0, 0, 0, 0]])
         self.assert_refused(r"vertices: .*\(N, 3\)", raytally.Scene.from_arrays, [[0, 0]])
