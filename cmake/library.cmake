@@ -43,6 +43,10 @@ install(EXPORT raytally-headers NAMESPACE raytally:: DESTINATION ${CMAKE_INSTALL
 export(EXPORT raytally-headers NAMESPACE raytally:: FILE ${CMAKE_BINARY_DIR}/raytally-headers.cmake)
 install(DIRECTORY include/raytally DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 
+# Where Python of Debian looks below /usr; below other prefixes PYTHONPATH names it.
+set(RT_PYTHON_DIR lib/python3/dist-packages CACHE STRING "Where the Python module is installed, below the prefix")
+install(FILES python/raytally.py DESTINATION ${RT_PYTHON_DIR})
+
 # What builds against it.
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} USE_SOURCE_PERMISSIONS)
 

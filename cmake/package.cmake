@@ -23,9 +23,10 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "One ray tracer in C with interchangeable acceleration structures. A harness
 counts intersection tests exactly and measures time with intervals. Every hit
 is compared, bit for bit, with a loop over all objects, and with Embree.
-This package has the program, the library with its headers, and the guide.")
-set(CPACK_DEBIAN_PACKAGE_DEPENDS fonts-dejavu-core)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS gnuplot-nox)
+This package has the program, the library with its headers and a module of
+Python, and the guide.")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "fonts-dejavu-core, python3")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox, python3-numpy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "gcc, cmake, make, pkg-config, glmark2-data")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)

@@ -21,7 +21,7 @@ unlisted() {
 }
 
 unlicensed() {
-    find . -name build -prune -o \( -name '*.[ch]' -o -name '*.sh' -o -name '*.gp' -o -name '*.cmake' -o -name CMakeLists.txt \) -print |
+    find . -name build -prune -o \( -name '*.[ch]' -o -name '*.sh' -o -name '*.gp' -o -name '*.py' -o -name '*.cmake' -o -name CMakeLists.txt \) -print |
         grep -v '^\./results/' | sort | xargs awk '
             FNR <= 2 && /SPDX-License-Identifier: Apache-2.0/ { states[FILENAME] }
             END { for (i = 1; i < ARGC; i++) if (!(ARGV[i] in states)) print ARGV[i] ": no SPDX line" }'

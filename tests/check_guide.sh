@@ -26,14 +26,15 @@ slow=no patience=300 ran=0 compared=0 left_slow=0 lacking=()
 # available X: for needs=X
 available() {
     case $1 in
-    numpy) # for a python3 that may not be the first in PATH
-        python3 -c 'import numpy' 2>/dev/null && return
-        /usr/bin/python3 -c 'import numpy' 2>/dev/null && ln -sf /usr/bin/python3 "$work/bin/python3"
+    numpy)
+        local python
+        python=$(python_with_numpy) || return
+        [ "$python" = "$(command -v python3)" ] || ln -s "$python" "$work/bin/python3"
         ;;
     embree) raytally info balls:size=1 >/dev/null && raytally render balls:size=1 --size 2x2 --accel embree -o "$work/x.png" >/dev/null 2>&1 ;;
     library) # and the tools to link with it
         command -v cc >/dev/null && command -v pkg-config >/dev/null || return
-        export PREFIX=$work/prefix PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig
+        export PREFIX=$work/prefix PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig PYTHONPATH=$work/prefix/lib/python3/dist-packages
         [ -d "$PREFIX" ] && return
         cmake --install "$(dirname "$program")" --prefix "$PREFIX" >/dev/null 2>&1 && PATH=$PREFIX/bin:$PATH
         ;;

@@ -34,7 +34,7 @@ fi
 # ---- installed files ----
 quietly "cmake --install fails" cmake --install "$build" --prefix "$prefix"
 libraries=$(dirname "$(find "$prefix" -name libraytally.so)")
-for file in bin/raytally include/raytally/raytally.h include/raytally/types.h share/doc/raytally/examples/peers/fetch.sh; do
+for file in bin/raytally include/raytally/raytally.h include/raytally/types.h lib/python3/dist-packages/raytally.py share/doc/raytally/examples/peers/fetch.sh; do
     [ -s "$prefix/$file" ] || complain "$file is not installed"
 done
 

@@ -3,17 +3,8 @@
 # Rays, hits and counts as NumPy arrays: raytally reads NumPy's files correctly, and NumPy raytally's. Uses $RT_PROGRAM.
 # Skipped (77) without python3 or NumPy.
 set -euo pipefail
-program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
-# Another python3, without Debian's NumPy, may come first in PATH.
-python=
-for candidate in python3 /usr/bin/python3; do
-    if [ -z "$python" ] && "$candidate" -c 'import numpy' 2>/dev/null; then python=$(command -v "$candidate"); fi
-done
-[ -n "$python" ] || {
-    echo 'skipped: files of rays by NumPy; needs python3-numpy'
-    exit 77
-}
-work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+. "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
+python=$(python_with_numpy) || { echo 'skipped: files of rays by NumPy; needs python3-numpy' && exit 77; }
 mkdir "$work/bin" && ln -s "$program" "$work/bin/raytally"
 printf '#!/bin/sh\nexec "%s" "$@"\n' "$python" >"$work/bin/python3" && chmod +x "$work/bin/python3"
 export PATH=$work/bin:$PATH

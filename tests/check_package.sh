@@ -31,12 +31,12 @@ cmake --install "$build" --prefix "$work/prefix" >/dev/null
     sort) >"$work/packed"
 diff "$work/installed" "$work/packed" >&2 || complain "the .deb does not hold what is installed"
 for file in bin/raytally include/raytally/raytally.h share/man/man1/raytally-bench.1.gz share/doc/raytally/docs/guide/README.md \
-    share/doc/raytally/copyright share/raytally/experiments/first-look.yaml share/raytally/scenes/jewel.nff; do
+    lib/python3/dist-packages/raytally.py share/doc/raytally/copyright share/raytally/experiments/first-look.yaml share/raytally/scenes/jewel.nff; do
     [ -s "$work/root/usr/$file" ] || complain "the .deb has no $file"
 done
 while read -r document; do check_links "$document"; done < <(find "$work/root" -name '*.md')
 needs=$(dpkg-deb -f "$deb" Depends)
-for library in libc6 libcairo2 libgmp10 libjansson4 libyaml-0-2 fonts-dejavu-core; do
+for library in libc6 libcairo2 libgmp10 libjansson4 libyaml-0-2 fonts-dejavu-core python3; do
     [[ $needs == *"$library"* ]] || complain "the .deb depends on $needs, not on $library"
 done
 if command -v lintian >/dev/null; then
@@ -53,6 +53,11 @@ shipped=$work/root/usr/share/raytally/experiments/papers/amanatides-woo-1987.yam
 (cd "$work/elsewhere" && timeout 300 "$RT_PROGRAM" run "$shipped" --quick --out out) >"$work/log" 2>&1 ||
     complain "a shipped experiment fails: $(tail -n 20 "$work/log")"
 [ -z "$(command -v gnuplot)" ] || [ -s "$work/elsewhere/out/plots/1-dots.svg" ] || complain "a shipped experiment draws no plot"
+
+if python=$(python_with_numpy); then
+    said=$(PYTHONPATH=$work/root/usr/lib/python3/dist-packages "$python" -c 'import raytally; print(raytally._library._name)' 2>&1) || true
+    [[ $said = "$work"/root/* ]] || complain "the Python module of the .deb: $said"
+fi
 
 # ---- the source archive ----
 made package_source "$build/raytally-$version.tar.gz"

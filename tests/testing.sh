@@ -16,6 +16,15 @@ conclude() {
     [ "$failures" = 0 ] || { echo "$failures complaints" >&2 && exit 1; }
 }
 
+# python_with_numpy: the path of a python3 that has NumPy; another one may come first in PATH
+python_with_numpy() {
+    local candidate
+    for candidate in python3 /usr/bin/python3; do
+        if "$candidate" -c 'import numpy' 2>/dev/null; then command -v "$candidate" && return; fi
+    done
+    return 1
+}
+
 # ends CODE ARGUMENT...: runs raytally, and checks its exit code; stdout goes to the file `printed`, stderr to `said`
 ends() {
     local wanted=$1 code=0

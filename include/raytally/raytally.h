@@ -361,6 +361,13 @@ RAYTALLY_API raytally_status raytally_verify(const raytally_scene *scene, const 
 RAYTALLY_API raytally_status raytally_count(raytally_accelerator *accelerator, const raytally_rays *rays,
                                             int threads, raytally_counters *out, raytally_error *error);
 
+/** Counts what each of `rays` costs, traced by itself: counts[i * counters + c] gets ::raytally_counter `c`
+ * of ray `i`, for c < counters; 0 for a counter that this library does not know. Their sums are those of
+ * raytally_count. Since version 1.1. */
+RAYTALLY_API raytally_status raytally_count_each(const raytally_accelerator *accelerator,
+                                                 const raytally_rays *rays, int threads, uint64_t *counts,
+                                                 uint32_t counters, raytally_error *error);
+
 /** The median of repeated measurements, with a confidence interval by order statistics. */
 typedef struct raytally_estimate {
     double median;      /**< The middle of the measurements. */

@@ -61,6 +61,37 @@ raytally_status raytally_count(raytally_accelerator *accelerator, const raytally
     return (raytally_status)count_rays(accelerator->accel, &rays->set, threads, out, rt_error_of(error));
 }
 
+/* An accelerator that learns does so in a copy: this one may be in use by other threads. */
+static RtStatus count_each(const raytally_accelerator *accelerator, const RtRaySet *set, int threads,
+                           uint64_t *counts, uint32_t counters, RtError *error) {
+    RT_ARENA(arena);
+    RT_OWNED(RtRows, rows, rt_rows_clear);
+    RT_OWNED(RtAccel *, copy, rt_accel_destroy_at);
+    const RtAccel *accel = accelerator->accel;
+    RT_TRY(rt_threads_check(threads, error));
+    if (learns(accel)) {
+        RtHit *hits = rt_arena_alloc(&arena, (size_t)set->count, sizeof *hits);
+        RT_TRY(rt_arena_check(&arena, "answers", error));
+        RT_TRY(rt_accel_open_on(accelerator->spec, accel->scene, threads, &copy, error));
+        RT_TRY(answer(copy, set, threads, hits, error));
+        RT_TRY(rt_accel_learn(copy, set->rays, hits, (size_t)set->count, error));
+        accel = copy;
+    }
+    RT_TRY(rt_measure_rows(accel, set, threads, &rows, error));
+    for (uint64_t i = 0; i < set->count; i++) {
+        for (uint32_t c = 0; c < counters; c++, counts++)
+            *counts = c < RT_TALLY_COUNTER_COUNT ? rt_tally_get(&rows.tallies[i], c) : 0;
+    }
+    return RT_OK;
+}
+
+raytally_status raytally_count_each(const raytally_accelerator *accelerator, const raytally_rays *rays,
+                                    int threads, uint64_t *counts, uint32_t counters, raytally_error *error) {
+    RT_C_LOCALE;
+    return (raytally_status)count_each(accelerator, &rays->set, threads, counts, counters,
+                                       rt_error_of(error));
+}
+
 /* ---- statistics ---- */
 
 static RtStatus check_rounds(uint32_t count, const char *what, RtError *error) {

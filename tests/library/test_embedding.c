@@ -226,6 +226,26 @@ RT_TEST(counts_are_those_of_the_definition) {
     assert_int_equal(counters.at[RAYTALLY_OBJECT_TESTS], hits); /* one for each ray that hits */
 }
 
+RT_TEST(counts_of_each_ray_sum_up_to_those_of_all) {
+    enum { MANY = RAYTALLY_COUNTERS_KNOWN + 2 };
+    raytally_counters all;
+    const size_t rays = raytally_rays_count(balls.rays);
+    uint64_t *counts = rt_alloc(rays * MANY, sizeof *counts);
+    for (int accel = 0; accel < 3; accel++) {
+        assert_fine(raytally_count(balls.accels[accel], balls.rays, 1, &all, error));
+        memset(counts, 0xff, rays * MANY * sizeof *counts);
+        assert_fine(raytally_count_each(balls.accels[accel], balls.rays, 2, counts, MANY, error));
+        for (size_t c = 0; c < MANY; c++) {
+            uint64_t sum = 0;
+            for (size_t i = 0; i < rays; i++) sum += counts[i * MANY + c];
+            assert_int_equal(sum, all.at[c]);
+        }
+        for (size_t i = 0; i < rays; i++) assert_int_equal(counts[i * MANY + RAYTALLY_RAYS], 1);
+    }
+    assert_refused(raytally_count_each(balls.accels[0], balls.rays, -1, counts, MANY, error), "threads");
+    rt_free(counts);
+}
+
 /* ideal knows rays by their addresses: it must not use what it learned for other rays at the same addresses.
  */
 RT_TEST(what_was_taught_for_a_count_is_forgotten) {
@@ -318,6 +338,7 @@ static raytally_status use_all(raytally_error *error) {
     OWNED_WORK on = {0}, other = {0};
     raytally_verify_result found;
     raytally_counters counters;
+    uint64_t counts[4];
     raytally_time times[2];
     recording.threads = verifying.threads = timing.threads = 1;
     verifying.rays = 20;
@@ -334,6 +355,7 @@ static raytally_status use_all(raytally_error *error) {
     if (status == RAYTALLY_OK) status = raytally_tracer_new(on.accel, &on.tracer, error);
     if (status == RAYTALLY_OK) status = raytally_verify(on.scene, "grid", &verifying, &found, error);
     if (status == RAYTALLY_OK) status = raytally_count(other.accel, on.rays, 1, &counters, error);
+    if (status == RAYTALLY_OK) status = raytally_count_each(other.accel, on.rays, 1, counts, 1, error);
     raytally_accelerator *both[2] = {on.accel, other.accel};
     if (status == RAYTALLY_OK) status = raytally_time_all(both, 2, on.rays, &timing, times, error);
     if (status == RAYTALLY_OK) status = raytally_render(on.accel, 1, 1, NULL, NULL, error);
