@@ -253,6 +253,7 @@ RtStatus rt_cli_ray(const char *text, RtRay *ray, RtError *error);
 RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, const char *text);
 
 #define RT_CLI_PICTURES ".png, .svg or .pdf" /* the formats of pictures */
+#define RT_CLI_ROWS     ".npy or .csv"       /* of rays, hits and counts */
 
 /* For parsers: stores `path` in *slot; ends the process by argp_error if it ends in none of `extensions`, or
  * if *slot is set. */

@@ -80,7 +80,7 @@ static const RtOption options[] = {
      "lengths of the direction) and object (-1 for a miss), as `raytally bench --hits` writes it; or "
      "float32, t "
      "alone (inf for a miss). No accelerator is verified unless --accel names one"},
-    {"wrong-rays", 0, "FILE.npy", RT_TO_PATH(work.wrong_rays, ".npy"),
+    {"wrong-rays", 0, "FILE.npy", RT_TO_PATH(work.wrong_rays, RT_CLI_ROWS),
      "Write the rays with a wrong answer to FILE, as --rays-from and `raytally trace --ray FILE.npy:0` read "
      "it"},
     {"seed", 's', "S", RT_TO_INTEGER(work.rays.seed, 0, INT64_MAX),

@@ -2,6 +2,7 @@
 /* measure/measure.h: arrays of rays as NumPy writes them, and files that are invalid or of other types. */
 #include "experiment_testing.h"
 
+#include "core/base/file.h"
 #include "measure/measure.h"
 
 #include <fcntl.h>
@@ -204,6 +205,79 @@ PLACE_TEST(hits_of_other_types_lengths_and_objects_are_refused_with_what_to_writ
         Path path = write_bytes(place, cases[i].header, t, sizeof t);
         assert_bad_input(rt_hits_load(path.text, cases[i].rays, 6, &hits, error), cases[i].says);
         assert_null(hits);
+    }
+}
+
+/* ---- text ---- */
+
+static Path write_text(const Place *place, const char *text) {
+    Path path = path_in(place, "some.csv");
+    assert_ok(rt_file_write(path.text, text, strlen(text), error));
+    return path;
+}
+
+PLACE_TEST(rays_as_text_keep_every_bit) {
+    RtRay rays[] = {
+        {.org = {{0.1f, -0.0f, 1e-45f}}, .tmin = 0x1.fffffep-1f, .dir = {{3e38f, 1, 2}}, .tmax = 3e38f},
+        {.org = {{1000.00006f, 1 / 3.0f, -5e17f}}, .dir = {{0, 0, -1e-40f}}, .tmax = INFINITY}};
+    const RtRaySet set = {.kind = RT_RAY_PRIMARY, .count = 2, .rays = rays};
+    RtRaySet read;
+    Path path = path_in(place, "some.csv");
+    assert_ok(rt_rays_save(&set, path.text, error));
+    assert_ok(rt_rays_load(path.text, RT_RAY_PRIMARY, &read, error));
+    assert_int_equal(read.count, 2);
+    assert_memory_equal(read.rays, rays, sizeof rays);
+    rt_rayset_clear(&read);
+}
+
+PLACE_TEST(columns_of_text_are_found_by_name_and_an_interval_may_be_left_out) {
+    RtRaySet set;
+    Path path = write_text(place, "dz,dy,pixel, dx,oz,oy,ox\r\n6,5,a,4,3,2,1\r\n\r\n-6,5,b,4,3,2,1");
+    assert_ok(rt_rays_load(path.text, RT_RAY_RANDOM, &set, error));
+    assert_int_equal(set.count, 2);
+    const RtRay ray = {.org = {{1, 2, 3}}, .dir = {{4, 5, -6}}, .tmax = INFINITY, .kind = RT_RAY_RANDOM};
+    assert_memory_equal(&set.rays[1], &ray, sizeof ray);
+    rt_rayset_clear(&set);
+}
+
+PLACE_TEST(hits_as_text_have_an_object_or_t_alone) {
+    const char *const texts[] = {"object,t\n5,2\n-1,inf\n", "t,u\n2,0.5\ninf,0\n"};
+    for (size_t i = 0; i < 2; i++) {
+        OWNED_MEMORY RtHit *hits = NULL;
+        Path path = write_text(place, texts[i]);
+        assert_ok(rt_hits_load(path.text, 2, 6, &hits, error));
+        assert_true(hits[0].t == 2 && hits[0].object == (i == 0 ? 5 : RT_UNNAMED_OBJECT));
+        assert_true(hits[1].t == INFINITY && hits[1].object == RT_NO_OBJECT);
+    }
+}
+
+PLACE_TEST(text_without_its_columns_or_numbers_is_refused) {
+    const struct {
+        const char *text, *says;
+        bool hits;
+    } cases[] = {
+        {"", "expected ox,oy,oz,tmin,dx,dy,dz,tmax, with or without", false},
+        {"ox,oy,oz,dx,dy\n1,2,3,4,5\n", "the first line names the columns", false},
+        {"1,2,3,4,5,6,7,8\n", "the first line names the columns", false},
+        {"ox,oy,oz,dx,dy,dz\n", "it contains no rays", false},
+        {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5\n", "row 0 (the first is 0) has not the 6 columns", false},
+        {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6,7\n", "row 0 (the first is 0) has not the 6 columns", false},
+        {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6\n1,2,,4,5,6\n", "row 1 (the first is 0): oz is ''", false},
+        {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6x\n", "dz is '6x': no number", false},
+        {"ox,oy,oz,dx,dy,dz\n1,2,3,0,0,0\n", "row 0 (the first is 0) is not a valid ray", false},
+        {"object\n1\n", "expected t,object or t", true},
+        {"t,object\n1,2.5\n", "object is '2.5': no integer", true},
+        {"t,object\n1,6\n", "there is no object 6", true},
+        {"t\n-1\n", "a miss is written as infinity", true},
+        {"t\n1\n1\n", "2 hits for 1 ray", true}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtRaySet set;
+        RtHit *hits;
+        Path path = write_text(place, cases[i].text);
+        if (cases[i].hits)
+            assert_bad_input(rt_hits_load(path.text, 1, 6, &hits, error), cases[i].says);
+        else
+            assert_bad_input(rt_rays_load(path.text, RT_RAY_RANDOM, &set, error), cases[i].says);
     }
 }
 
