@@ -99,6 +99,10 @@ struct Source {
     int columns[MOST_COLUMNS], column_count; /* of a text: indices into form->names, -1 for others */
 };
 
+static RtStatus fail_to_read(const Source *s, RtError *error) {
+    return rt_fail(error, RT_IO, "%s: reading failed before the last row", s->path);
+}
+
 static bool is_type(const json_t *descr, const char *type) {
     return json_is_string(descr) && strcmp(json_string_value(descr), type) == 0;
 }
@@ -121,7 +125,8 @@ static bool take_hits(const json_t *descr, const json_t *shape, Source *s) {
     json_array_foreach(descr, i, field) {
         const char *name = json_string_value(json_array_get(field, 0));
         const char *type = json_string_value(json_array_get(field, 1));
-        const size_t bytes = type && type[0] && strchr("biufV", type[1]) ? strtoul(type + 2, NULL, 10) : 0;
+        const bool sized = type && strlen(type) > 2 && strchr("biufV", type[1]);
+        const size_t bytes = sized ? strtoul(type + 2, NULL, 10) : 0;
         if (!name || bytes == 0 || bytes > MOST_ROW || json_array_size(field) != 2) return false;
         if (strcmp(name, "t") == 0) {
             s->t = s->bytes;
@@ -224,8 +229,7 @@ static RtStatus open_text(Source *s, RtError *error) {
                        MOST_COLUMNS);
     const long start = ftell(s->file);
     while (read_line(s->file, line)) s->rows++;
-    if (start < 0 || fseek(s->file, start, SEEK_SET) != 0)
-        return rt_fail(error, RT_IO, "%s: it cannot be read twice", s->path);
+    if (start < 0 || ferror(s->file) || fseek(s->file, start, SEEK_SET) != 0) return fail_to_read(s, error);
     s->object = sizeof(int64_t);
     if (s->form == &hits_form && found >> OBJECT & 1) s->object_bytes = sizeof(int64_t);
     return RT_OK;
@@ -237,7 +241,7 @@ static RtStatus read_words(Source *s, uint64_t row, char *bytes, RtError *error)
     char line[MOST_ROW] = "", *rest = line, *word, *end;
     int column = 0;
     memcpy(bytes, defaults, sizeof defaults);
-    read_line(s->file, line);
+    if (!read_line(s->file, line)) return fail_to_read(s, error);
     for (; (word = strsep(&rest, ",")) && column < s->column_count; column++) {
         const int k = s->columns[column];
         const bool integer = s->form == &hits_form && k == OBJECT;
@@ -260,7 +264,7 @@ static RtStatus read_words(Source *s, uint64_t row, char *bytes, RtError *error)
 
 /* ---- rows ---- */
 
-/* *source is to be closed by fclose(source->file), if that is not NULL, also after a failure. */
+/* Call close_rows also after a failure. */
 static RtStatus open_rows(Source *s, const char *path, const Form *form, RtError *error) {
     *s = (Source){.path = path, .form = form, .text = is_text(path)};
     RT_TRY(rt_file_open(path, &s->file, error));
@@ -277,7 +281,7 @@ static void close_rows(Source *s) {
 static RtStatus read_row(Source *s, uint64_t row, char bytes[MOST_ROW], RtError *error) {
     if (s->text) return read_words(s, row, bytes, error);
     if (fread(bytes, s->bytes, 1, s->file) == 1) return RT_OK;
-    return rt_fail(error, RT_IO, "%s: reading failed before the last row", s->path);
+    return fail_to_read(s, error);
 }
 
 /* ---- writing headers ---- */
