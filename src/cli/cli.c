@@ -139,15 +139,14 @@ json_t *rt_cli_vector_json(RtVec3 v) {
 
 /* ---- rays ---- */
 
-/* Reads x[0..8), with commas between; returns how many there are, 0 if `text` is something else. */
+/* Reads x[0..8), with commas or spaces between; returns how many there are, 0 if `text` is something else. */
 static int read_numbers(const char *text, float x[8]) {
-    for (int count = 0; count < 8; text++) {
-        char *end;
+    char *end;
+    for (int count = 0; count < 8; text = end + strspn(end, ", ")) {
         x[count++] = strtof(text, &end);
         if (end == text) return 0;
         if (!*end) return count;
-        if (*end != ',') return 0;
-        text = end;
+        if (!strchr(", ", *end)) return 0;
     }
     return 0;
 }

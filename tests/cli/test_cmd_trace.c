@@ -157,6 +157,8 @@ RT_TEST(a_given_ray_is_asked_for_any_hit_or_followed_with_its_tree) {
                 "nothing blocks it");
     assert_said(trace("balls:size=2 --ray 0,0,9,0,0,-1 --rays shadow --accel item+light+cache+bvh"), 0,
                 OUT ".txt", "it is blocked by object");
+    assert_said(trace("balls:size=2 --ray '0 0 9  0, 0, -1' --rays shadow"), 0, OUT ".txt",
+                "it is blocked by");
     assert_said(trace("balls:size=2 --ray 0,0,9,0,0,-1 --depth 2"), 0, OUT ".txt",
                 "the ray tree, 2 levels, of ray 0,0,9,0,0,-1");
     assert_true(says(OUT ".txt", "shadow to light 0"));
@@ -236,6 +238,7 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls --ray 1,2,3,4,5,6,7,8,9", "is no ray"},
         {"balls --ray 1,2,3,4,5,6,", "is no ray"},
         {"balls --ray 1,2,3,4,5,x", "is no ray"},
+        {"balls --ray 1,2,3,4,5x6", "is no ray"},
         {"balls --ray 1,2,3,0,0,0", "not a valid ray: its direction is zero"},
         {"balls --ray 1,2,3,4,5,6,7,6", "not a valid ray: its tmax is less than its tmin"},
         {"balls --ray 1,2,3,4,5,6 --light 1", "leave out --light"},

@@ -197,7 +197,7 @@ PLACE_TEST(hits_of_other_types_lengths_and_objects_are_refused_with_what_to_writ
                  {HITS("[('t', '<f4'), ('object', '<i4')]", "2, 1"), "expected float32", 2},
                  {HITS("[('t', '<f4'), ('object', '<i4'), ('x', '|V9999')]", "2,"), "expected float32", 2},
                  {HITS("[('t', '<f4'), ('object', '<i4'), ('x', '')]", "2,"), "expected float32", 2},
-        {HITS("[('t', '<f4'), ('object', '<i4'), ('x', '<')]", "2,"), "expected float32", 2},
+                 {HITS("[('t', '<f4'), ('object', '<i4'), ('x', '<')]", "2,"), "expected float32", 2},
                  {HITS("[('t', '<f4'), ('object', '<i4')]", "1,"), "8 bytes, but 16 follow", 1},
                  {HITS("[('t', '<f4'), ('object', '<i4')]", "2,"),
                   "row 0 (the first is 0): there is no object -1082130432: the scene has 6, from 0 on", 2}};
