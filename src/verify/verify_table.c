@@ -47,6 +47,7 @@ static void add(RtVerifySum *sum, const json_t *row) {
     if (!json_is_true(json_object_get(row, "exact"))) sum->judged += number(row, "rays");
     if (strcmp(rt_json_text(row, "accel", ""), rt_json_text(row, "against", "")) == 0)
         sum->itself += number(row, "rays");
+    if (json_is_null(json_object_get(row, "occluded_wrong"))) sum->recorded += number(row, "rays");
     sum->certain += number(row, "certain");
     sum->must_hit += number(row, "must_hit");
     sum->certain_of += number(row, "certain_of");
@@ -261,6 +262,9 @@ static void write_introduction(const RtVerifySum *total, FILE *out) {
     fprintf(out, "%" PRIu64 " answer%s to `nearest` %s wrong, %" PRIu64 " to `occluded`. ",
             total->verdicts[RT_WRONG], rt_plural(total->verdicts[RT_WRONG]),
             total->verdicts[RT_WRONG] == 1 ? "is" : "are", total->occluded_wrong);
+    if (total->recorded > 0)
+        fprintf(out, "%" PRIu64 " comparison%s %s with hits of a file, which answer `nearest` alone.\n",
+                total->recorded, rt_plural(total->recorded), total->recorded == 1 ? "is" : "are");
     fprintf(out, "%u row%s, %u of which fail, %s in [verify.csv](verify.csv).\n", total->rows,
             rt_plural(total->rows), total->failed, total->rows == 1 ? "is" : "are");
     fputs(

@@ -406,6 +406,7 @@ RT_TEST(hits_are_judged_again_only_if_they_are_the_same) {
     write_hits(0, 1);
     begin_anew(GIVEN " --out '" OUT ".judged'");
     assert_int_equal(verify(GIVEN " --out '" OUT ".judged' --resume"), 0);
+    assert_non_null(strstr(text_of(OUT ".judged/verify.md"), "1600 comparisons are with hits of a file"));
     write_hits(1, 1.5f);
     assert_said(verify(GIVEN " --out '" OUT ".judged' --resume"), 2, OUT ".err", "with different hits_hash");
 }
