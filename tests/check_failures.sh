@@ -43,6 +43,8 @@ ends 0 convert balls:size=1 scene.yaml
 ends 0 convert balls:size=1 scene.nff
 ends 0 convert tetra:size=1 mesh.obj
 ends 0 rays balls:size=1 --size 6x6 --rays primary -o rays.npy
+ends 0 rays balls:size=1 --size 6x6 --rays primary -o rays.csv
+ends 0 bench scene.yaml --accel bvh --rays-from rays.npy --rays nearest --count-only --hits hits.csv
 ends 0 run small.yaml --out done --threads 1
 ends 0 run small.yaml --out part --threads 1 --only cloud
 cp -a done again
@@ -68,6 +70,8 @@ commands=(
     "bench scene.yaml $frame --accel bvh --accel item+light+octree --rays primary,shadow --count-only --csv out.csv --counts out.npy --json --threads 1"
     'bench scene.yaml --accel kd --rays-from rays.npy --rays nearest --count-only --hits out.npy --threads 2'
     'verify scene.yaml --accel bvh --accel wide --rays 20 --threads 1 --out checked'
+    'verify scene.yaml --rays-from rays.csv --hits-from hits.csv --wrong-rays out.npy --threads 1 --json'
+    'trace scene.yaml --ray rays.npy:7 --depth 2 --json'
     'verify mesh.obj --accel embree:mode=user --rays 20 --threads 1 --json'
     'run small.yaml --out out --threads 1'
     'run small.yaml --out part --threads 1 --resume'

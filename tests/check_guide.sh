@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # check_guide.sh [--slow] [DOCUMENT...]: runs the commands of docs/guide/*.md and docs/accelerators/*.md, or of the named
 # documents (a folder names all in it). Uses $RT_PROGRAM. The blocks of a document run in order in one scratch directory with
-# copies of docs/, experiments/, results/ and scenes/:
+# copies of docs/, examples/, experiments/, results/ and scenes/:
 #   ```sh                 run by bash, -euo pipefail; `raytally` is in PATH; must end with exit code 0
 #   ```sh exit=1          must end with exit code 1
 #   ```sh slow            run only with --slow, by hand
@@ -99,7 +99,7 @@ check_document() {
     local document=$1 number=0 line place='' words=()
     last='' scratch=$work/scratch
     rm -rf "$scratch" && mkdir "$scratch"
-    for folder in docs experiments results scenes; do
+    for folder in docs examples experiments results scenes; do
         [ ! -d "$root/$folder" ] || cp -r "$root/$folder" "$scratch/"
     done
     while IFS= read -r line || [ -n "$line" ]; do

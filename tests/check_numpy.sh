@@ -68,3 +68,18 @@ for name in counts.dtype.names:
 met = hits["object"] >= 0
 assert met.sum() == table["hits"] and numpy.isfinite(hits["t"][met]).all() and numpy.isinf(hits["t"][~met]).all()
 EOF
+
+# As text: the same numbers.
+raytally rays balls:size=2 --size 64x64 --rays diffuse -o rays.csv >said
+raytally $given rays.csv --hits h.csv --counts c.csv >said
+python3 - <<'EOF'
+import numpy
+def read(path, dtype):
+    return numpy.genfromtxt(path, delimiter=",", names=True, dtype=dtype)
+assert (numpy.loadtxt("rays.csv", dtype="float32", delimiter=",", skiprows=1) == numpy.load("rays.npy")).all()
+hits, counts = numpy.load("h1.npy"), numpy.load("c1.npy")
+assert (read("h.csv", hits.dtype) == hits).all()
+assert (read("c.csv", counts.dtype) == counts).all() and read("c.csv", None).dtype.names == counts.dtype.names
+numpy.savetxt("h.csv", hits["t"], header="t", comments="")
+EOF
+raytally verify balls:size=2 --rays-from rays.csv --hits-from h.csv >said || fail "t as text is judged: $(cat said)"

@@ -76,6 +76,7 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
 }
 
 static bool find_cell(const RtAccel *accel, const RtRay *ray, RtCellView *cell) {
+    if (ray->source >= rt_item_sample_count((const RtItemBuffer *)accel)) return false;
     uint32_t named = ((const RtItemBuffer *)accel)->samples[ray->source];
     *cell = (RtCellView){ray->source, named != RT_NO_OBJECT, named, false};
     return true;

@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 
 #include "cli/jobs.h"
+#include "measure/measure.h"
 #include "scenes/open.h"
 
 #include <assert.h>
@@ -132,6 +133,53 @@ RtStatus rt_cli_open_scene(const char *spec, RtScene *scene, RtError *error) {
 
 json_t *rt_cli_vector_json(RtVec3 v) {
     return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
+}
+
+/* ---- rays ---- */
+
+/* Reads x[0..8), with commas or spaces between; returns how many there are, 0 if `text` is something else. */
+static int read_numbers(const char *text, float x[8]) {
+    char *end;
+    for (int count = 0; count < 8; text = end + strspn(end, ", ")) {
+        x[count++] = strtof(text, &end);
+        if (end == text) return 0;
+        if (!*end) return count;
+        if (!strchr(", ", *end)) return 0;
+    }
+    return 0;
+}
+
+static RtStatus row_of_file(const char *text, const char *colon, RtRay *ray, RtError *error) {
+    RT_OWNED(RtRaySet, set, rt_rayset_clear);
+    char path[RT_MAX_PATH], *end;
+    const unsigned long long row = strtoull(colon + 1, &end, 10);
+    snprintf(path, sizeof path, "%.*s", (int)(colon - text), text);
+    RT_TRY(rt_rays_load(path, RT_RAY_RANDOM, &set, error));
+    if (end == colon + 1 || *end || row >= set.count)
+        return rt_fail(error, RT_BAD_INPUT, "%s has no row '%s': choose 0..%llu", path, colon + 1,
+                       (unsigned long long)set.count - 1);
+    *ray = set.rays[row];
+    return RT_OK;
+}
+
+RtStatus rt_cli_ray(const char *text, RtRay *ray, RtError *error) {
+    float x[8] = {[7] = INFINITY};
+    const int count = read_numbers(text, x);
+    const char *colon = strrchr(text, ':');
+    if (count == 0 && colon) return row_of_file(text, colon, ray, error);
+    if (count != 6 && count != 8)
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "--ray: '%s' is no ray: expected OX,OY,OZ,DX,DY,DZ or OX,OY,OZ,DX,DY,DZ,TMIN,TMAX, as in "
+            "0,0,5,0,0,-1; or FILE.npy:N",
+            text);
+    *ray = (RtRay){.org = rt_vec3(x[0], x[1], x[2]),
+                   .tmin = x[6],
+                   .dir = rt_vec3(x[3], x[4], x[5]),
+                   .tmax = x[7],
+                   .kind = RT_RAY_RANDOM};
+    if (rt_ray_is_valid(ray)) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "--ray: '%s' is not a valid ray: %s", text, rt_ray_fault(ray));
 }
 
 /* ---- tables of options ---- */

@@ -108,17 +108,19 @@ static const RtOption options[] = {
     {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* run/worker.h */
     {"csv", 0, "FILE", RT_TO_TEXT(csv),
      "Also write a row per cell to FILE, in the columns of times.csv, or of counts.csv with --count-only"},
-    {"hits", 0, "FILE.npy", RT_TO_PATH(workload.hits, ".npy"),
-     "Also write each ray's hit for NumPy, a row per ray: t and object (inf and -1 for a miss); for shadow "
+    {"hits", 0, "FILE.npy", RT_TO_PATH(workload.hits, RT_CLI_ROWS),
+     "Also write each ray's hit for NumPy, or as text to FILE.csv, a row per ray: t and object (inf and -1 "
+     "for a miss); for shadow "
      "and occlusion rays whether the ray is blocked. Several scenes, accelerators or kinds of rays have a "
      "file each, FILE-SCENE-ACCELERATOR-KIND.npy, without what they have in common"},
-    {"counts", 0, "FILE.npy", RT_TO_PATH(workload.counts, ".npy"),
-     "Also write each ray's cost for NumPy, a row per ray and a field per counter; files as with --hits"},
+    {"counts", 0, "FILE.npy", RT_TO_PATH(workload.counts, RT_CLI_ROWS),
+     "Also write each ray's cost, a row per ray and a field per counter; files as with --hits"},
     RT_STRICT_OPTION,
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
     {"rays-from", 0, "FILE.npy", RT_TO_TAKE(take_rays_from),
-     "Measure the rays of FILE instead of recorded ones: an array of float32 of shape (N, 8) as `raytally "
-     "rays` writes it. --rays chooses the query: nearest, or occlusion (any hit)"},
+     "Measure the rays of FILE instead of recorded ones: an array of float32 of shape (N, 8), or text "
+     "(.csv), as "
+     "`raytally rays` writes it. --rays chooses the query: nearest, or occlusion (any hit)"},
     {0}};
 
 /* ---- the report ---- */
@@ -172,7 +174,8 @@ static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
 static void say_written(const char *path, const RtExperiment *e, bool cells) {
     const bool several = cells && e->workload_count * e->candidate_count * e->kind_count > 1;
     const size_t length = path ? strlen(path) : 0;
-    if (path) printf("wrote %.*s%s\n", (int)(several ? length - 4 : length), path, several ? "-*.npy" : "");
+    if (several && path) printf("wrote %.*s-*%s\n", (int)length - 4, path, path + length - 4);
+    if (!several && path) printf("wrote %s\n", path);
 }
 
 static RtStatus report(const Options *o, const RtResults *results, const RtCallgrind *callgrind,

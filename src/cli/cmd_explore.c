@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 typedef struct Options {
-    const char *scene, *page;
+    const char *scene, *page, *ray;
     const char *accels[RT_MAX_EXPLORED];
     uint32_t accel_count, size[2], depth, megabytes;
 } Options;
@@ -25,6 +25,8 @@ static const RtOption options[] = {
      "Accelerator (default bvh), up to 4 times; `raytally accels` lists them"},
     {"output", 'o', "FILE.html", RT_TO_PATH(page, ".html"), "The page"},
     {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default 160x120)"},
+    {"ray", 'r', RT_RAY_OPERAND, RT_TO_TEXT(ray),
+     "Show this ray first, with its own ray tree, beside those of pixels: " RT_RAY_HELP},
     {"depth", 'd', "N", RT_TO_INTEGER(depth, 1, RT_MAX_DEPTH),
      "Levels of the ray tree, the primary ray being the first, 1..64 (default 4)"},
     {"megabytes", 0, "N", RT_TO_INTEGER(megabytes, 1, 100),
@@ -54,7 +56,9 @@ static RtStatus build(RtAccel **accels, RtExploredSpec *specs, char (*texts)[RT_
 }
 
 static RtStatus run(Options *o, RtError *error) {
-    const RtExploreOptions how = {.depth = o->depth, .bytes = o->megabytes * 1000000};
+    RtRay given;
+    const RtExploreOptions how = {
+        .depth = o->depth, .given = o->ray ? &given : NULL, .bytes = o->megabytes * 1000000};
     RtAccel *accels[RT_MAX_EXPLORED] = {NULL};
     RtExploredSpec specs[RT_MAX_EXPLORED];
     char texts[RT_MAX_EXPLORED][RT_MAX_SPEC_CHARS];
@@ -62,6 +66,7 @@ static RtStatus run(Options *o, RtError *error) {
     uint32_t stride;
     RT_TRY(rt_explore_available(error));
     RT_TRY(rt_cli_check_json_name(o->scene, error));
+    if (o->ray) RT_TRY(rt_cli_ray(o->ray, &given, error));
     RT_TRY(rt_cli_open_scene(o->scene, &scene, error));
     RtStatus status = rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error);
     if (status == RT_OK) status = build(accels, specs, texts, o, &scene, error);

@@ -20,12 +20,13 @@ static void finish(void *options, struct argp_state *state) {
     rt_experiment_options_finish(&o->shared, state);
 }
 
-static const RtOption options[] = {{"out", 'o', "FILE.npy", RT_TO_TEXT(out), "The file to write"},
-                                   {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024),
-                                    "Threads, 0 for all processors (0); the rays do not depend on them"},
-                                   RT_STRICT_OPTION,
-                                   RT_LIMIT_OPTIONS,
-                                   {0}};
+static const RtOption options[] = {
+    {"out", 'o', "FILE.npy", RT_TO_TEXT(out), "The file to write; as text if it ends in .csv"},
+    {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024),
+     "Threads, 0 for all processors (0); the rays do not depend on them"},
+    RT_STRICT_OPTION,
+    RT_LIMIT_OPTIONS,
+    {0}};
 
 static RtStatus save(const Options *o, const RtRaySet *set, RtError *error) {
     const char *kind = rt_ray_kind_name(set->kind);
@@ -60,10 +61,11 @@ const RtSyntax rt_rays_syntax = {
     .shared_at = offsetof(Options, shared),
     RT_ONE_SCENE,
     .finish = finish,
-    .help = "Write the rays that `raytally bench` measures to a file for NumPy.\v"
+    .help = "Write the rays that `raytally bench` measures to a file for NumPy, or to a CSV file.\v"
             "Each row of the array, float32 of shape (N, 8), is a ray: origin x y z, tmin, direction x y z "
             "(of any length, the unit of t), tmax. `raytally bench --rays-from` and `raytally verify "
-            "--rays-from` read such files, from any renderer. Example:\n"
+            "--rays-from` read such files, from any renderer, and CSV files with the columns "
+            "ox,oy,oz,tmin,dx,dy,dz,tmax. Example:\n"
             "  raytally rays balls --rays diffuse -o rays.npy\n"
             "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest \\\n"
             "    --hits hits.npy\n"

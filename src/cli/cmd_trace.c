@@ -13,8 +13,9 @@
 #include <string.h>
 
 typedef struct Options {
-    const char *scene, *accel, *svg;
+    const char *scene, *accel, *svg, *ray; /* the last: NULL, or in place of the pixel */
     RtPixel pixel;
+    RtRay given; /* of `ray` */
     uint32_t size[2], light, depth;
     int64_t rows;
     RtRayKind kind;
@@ -29,7 +30,12 @@ static void take_kind(void *options, const char *text, struct argp_state *state)
 
 static void finish(void *options, struct argp_state *state) {
     const Options *o = options;
-    if (!o->pixel.given) argp_error(state, "the pixel is missing: --pixel X,Y");
+    const bool any_hit = o->kind == RT_RAY_SHADOW;
+    if (o->pixel.given == (o->ray != NULL))
+        argp_error(state, "give one of --pixel X,Y and --ray OX,OY,OZ,DX,DY,DZ");
+    if (o->ray && (o->light > 0 || (o->kind != RT_RAY_PRIMARY && !any_hit)))
+        argp_error(state,
+                   "--ray is the whole ray: leave out --light, and --rays except for shadow (any hit)");
     if (o->depth > 0 && (o->kind != RT_RAY_PRIMARY || o->light > 0))
         argp_error(state, "--depth follows all rays of the pixel: leave out --rays and --light");
 }
@@ -37,11 +43,12 @@ static void finish(void *options, struct argp_state *state) {
 static const RtOption options[] = {
     {"pixel", 'p', "X,Y", RT_TO_PIXEL(pixel),
      "The ray through the middle of this pixel; 0,0 is the upper left"},
+    {"ray", 'r', RT_RAY_OPERAND, RT_TO_TEXT(ray), "This ray instead: " RT_RAY_HELP},
     {"accel", 'a', "SPEC", RT_TO_TEXT(accel), "Accelerator (default bvh); `raytally accels` lists them"},
     {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the camera's)"},
     {"rays", 'k', "KIND", RT_TO_TAKE(take_kind),
      "primary (default), or the shadow, reflection or transmission ray that starts where the primary ray "
-     "hits"},
+     "hits; with --ray, shadow asks for any hit"},
     {"light", 0, "N", RT_TO_INTEGER(light, 0, UINT32_MAX),
      "The light that the shadow ray goes to (default 0)"},
     {"depth", 'd', "N", RT_TO_INTEGER(depth, 1, RT_MAX_DEPTH),
@@ -278,14 +285,19 @@ static json_t *row_json(const RtPathRow *row) {
     return json;
 }
 
+/* null for --ray */
+static json_t *pixel_json(const Options *o) {
+    return o->ray ? json_null() : json_pack("[i, i]", (int)o->pixel.x, (int)o->pixel.y);
+}
+
 /* `object` is null if none is hit, or if the occluder is unknown; `blocked` is null for nearest-hit rays. */
 static json_t *path_json(const RtPath *path, const Options *o, const char *spec) {
     const RtRay *r = &path->ray;
     json_t *rows = json_array();
     for (uint32_t i = 0; i < path->count; i++) json_array_append_new(rows, row_json(&path->rows[i]));
-    return json_pack("{s:s, s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
-                     o->scene, "accel", o->accel, "spec", spec, "pixel", (int)o->pixel.x, (int)o->pixel.y,
-                     "kind", rt_ray_kind_name(o->kind), "org", rt_cli_vector_json(r->org), "dir",
+    return json_pack("{s:s, s:s, s:s, s:o, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+                     o->scene, "accel", o->accel, "spec", spec, "pixel", pixel_json(o), "kind",
+                     rt_ray_kind_name((RtRayKind)r->kind), "org", rt_cli_vector_json(r->org), "dir",
                      rt_cli_vector_json(r->dir), "tmin", rt_json_number((double)r->tmin), "tmax",
                      rt_json_number((double)r->tmax), "rows", rows, "counts", rt_json_tally(&path->tally),
                      "object",
@@ -333,24 +345,29 @@ static json_t *tree_json(const RtRayTree *tree, const RtTally *costs, json_t **n
         nodes[i] = ray_json(&tree->rays[i], &costs[i], scene);
         if (parent != RT_NO_RAY) json_array_append_new(json_object_get(nodes[parent], "rays"), nodes[i]);
     }
-    return json_pack("{s:s, s:s, s:s, s:[i, i], s:i, s:i, s:o, s:o}", "scene", o->scene, "accel", o->accel,
-                     "spec", spec, "pixel", (int)o->pixel.x, (int)o->pixel.y, "depth", (int)tree->depth,
-                     "levels", (int)tree->levels, "color", rt_cli_vector_json(tree->color), "tree",
+    return json_pack("{s:s, s:s, s:s, s:o, s:i, s:i, s:o, s:o}", "scene", o->scene, "accel", o->accel, "spec",
+                     spec, "pixel", pixel_json(o), "depth", (int)tree->depth, "levels", (int)tree->levels,
+                     "color", rt_cli_vector_json(tree->color), "tree",
                      tree->count > 0 ? nodes[0] : json_null());
 }
 
 /* ---- the command ---- */
 
-/* `what` it is of the pixel: "the ray tree", "the primary ray". */
+/* `what` it is of the pixel, or "" for the ray of --ray itself: "ray tree", "primary ray". */
 static void make_title(const Options *o, const RtScene *scene, const char *what, char *title, size_t size) {
-    snprintf(title, size, "%s: the %s of pixel %u,%u of %u x %u", scene->name[0] ? scene->name : o->scene,
-             what, o->pixel.x, o->pixel.y, scene->sampling.width, scene->sampling.height);
+    const char *name = scene->name[0] ? scene->name : o->scene;
+    if (o->ray)
+        snprintf(title, size, "%s: %s%sray %s", name, *what ? "the " : "", what, o->ray);
+    else
+        snprintf(title, size, "%s: the %s of pixel %u,%u of %u x %u", name, what, o->pixel.x, o->pixel.y,
+                 scene->sampling.width, scene->sampling.height);
 }
 
 static RtStatus show_tree(const Options *o, const RtScene *scene, const RtRayTree *tree, const RtTally *costs,
                           json_t **nodes, const char *spec, RtError *error) {
     char title[512], what[64];
-    snprintf(what, sizeof what, "ray tree, %u level%s,", o->depth, rt_plural(o->depth));
+    snprintf(what, sizeof what, "ray tree, %u level%s,%s", o->depth, rt_plural(o->depth),
+             o->ray ? " of " : "");
     make_title(o, scene, what, title, sizeof title);
     if (o->svg) RT_TRY(rt_ray_tree_draw(tree, scene, title, o->svg, error));
     if (o->json) {
@@ -368,7 +385,9 @@ static RtStatus trace_tree(const Options *o, const RtScene *scene, RtAccel *acce
                            RtError *error) {
     RT_OWNED(RtRayTree, tree, rt_ray_tree_clear);
     RT_ARENA(arena);
-    RT_TRY(rt_ray_trees_trace(&tree, accel, &(RtSample){o->pixel.x, o->pixel.y}, 1, o->depth, error));
+    RT_TRY(o->ray
+               ? rt_ray_tree_trace_given(&tree, accel, &o->given, o->depth, error)
+               : rt_ray_trees_trace(&tree, accel, &(RtSample){o->pixel.x, o->pixel.y}, 1, o->depth, error));
     RtTally *costs = rt_arena_alloc(&arena, tree.count, sizeof(RtTally));
     json_t **nodes = rt_arena_alloc(&arena, tree.count, sizeof(void *));
     RT_TRY(rt_arena_check(&arena, "the counts of rays", error));
@@ -382,12 +401,12 @@ static RtStatus trace_tree(const Options *o, const RtScene *scene, RtAccel *acce
 
 static RtStatus trace_path(const Options *o, const RtScene *scene, RtAccel *accel, const char *spec,
                            RtError *error) {
-    char title[512], what[64];
-    RtRay ray;
+    char title[512], what[64] = "";
+    RtRay ray = o->given;
     RT_OWNED(RtPath, path, rt_path_clear);
-    RT_TRY(rt_path_ray(accel, o->kind, o->pixel.x, o->pixel.y, o->light, &ray, error));
+    if (!o->ray) RT_TRY(rt_path_ray(accel, o->kind, o->pixel.x, o->pixel.y, o->light, &ray, error));
     RT_TRY(rt_path_trace(&path, accel, &ray, error));
-    snprintf(what, sizeof what, "%s ray", rt_ray_kind_name(o->kind));
+    if (!o->ray) snprintf(what, sizeof what, "%s ray", rt_ray_kind_name(o->kind));
     make_title(o, scene, what, title, sizeof title);
     if (o->svg) RT_TRY(rt_path_draw(&path, scene, title, o->accel, o->svg, error));
     if (o->json) {
@@ -400,7 +419,7 @@ static RtStatus trace_path(const Options *o, const RtScene *scene, RtAccel *acce
     return RT_OK;
 }
 
-static RtStatus run(const Options *o, RtError *error) {
+static RtStatus run(Options *o, RtError *error) {
     RtSpec spec;
     char text[RT_MAX_SPEC_CHARS];
     RT_OWNED(RtScene, scene, rt_scene_clear);
@@ -410,7 +429,9 @@ static RtStatus run(const Options *o, RtError *error) {
     if (o->json) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_cli_open_scene(o->scene, &scene, error));
     RT_TRY(rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error));
-    RT_TRY(rt_cli_check_pixel(&scene.sampling, o->pixel, error));
+    if (o->pixel.given) RT_TRY(rt_cli_check_pixel(&scene.sampling, o->pixel, error));
+    if (o->ray) RT_TRY(rt_cli_ray(o->ray, &o->given, error));
+    if (o->kind == RT_RAY_SHADOW) o->given.kind = RT_RAY_OCCLUSION;
     RT_TRY(rt_accel_build(&spec, &scene, 0, &accel, error));
     RT_TRY(rt_path_available(accel, text, error));
     return (o->depth > 0 ? trace_tree : trace_path)(o, &scene, accel, text, error);
@@ -444,7 +465,8 @@ const RtSyntax rt_trace_syntax = {
         "  raytally trace balls --pixel 256,256 --accel grid:density=1 --svg path.svg\n"
         "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree \\\n"
         "    --rays shadow --light 1\n"
-        "  raytally trace scenes/lecture.yaml --pixel 279,366 --depth 4 --svg tree.svg\n\n"
+        "  raytally trace scenes/lecture.yaml --pixel 279,366 --depth 4 --svg tree.svg\n"
+        "  raytally trace balls --ray 2,2,2,-1,-1,-1.5 --accel grid\n\n"
         "embree counts no steps, so none are shown; with mode=user object tests are. A plugin's steps and "
         "extent tests have boxes only if it calls raytally_show (raytally/accel.h)."};
 

@@ -28,7 +28,7 @@ typedef struct Options {
     uint32_t given_count, accel_count;
     bool spread, quick, json;
     RtVerify work; /* work.rays.count 0: the default */
-    const char *replay, *rays_from;
+    const char *replay, *rays_from, *hits_from;
     RtRaySet given_rays;             /* those of rays_from */
     const char *scenes[MOST_SCENES]; /* of `work`: given, or by default; some are in `families` */
     RtVerifySpec specs[MOST_SPECS];  /* of `work` */
@@ -53,6 +53,10 @@ static void finish(void *options, struct argp_state *state) {
     if (o->rays_from && (o->quick || o->work.rays.count > 0 || o->replay || o->given_count == 0))
         argp_error(state, "--rays-from replaces the rays of one SCENE: name the SCENE, and leave out --rays, "
                           "--quick and --replay");
+    if (o->hits_from && (!o->rays_from || o->given_count > 1))
+        argp_error(state, "--hits-from are hits of the rays of --rays-from on one SCENE: give both");
+    if (o->work.wrong_rays && (o->given_count != 1 || o->work.start == RT_START_RESUME))
+        argp_error(state, "--wrong-rays writes rays of one SCENE, all in this run: no --resume");
     if (o->work.start != RT_START_FRESH && !o->work.folder)
         argp_error(state, "--resume and --force need the run's directory: --out DIR");
 }
@@ -71,6 +75,14 @@ static const RtOption options[] = {
     {"rays-from", 0, "FILE.npy", RT_TO_TEXT(rays_from),
      "Trace the rays of FILE instead: an array of float32 of shape (N, 8), as `raytally rays` writes it. "
      "Each ray is traced for its nearest hit and for any hit"},
+    {"hits-from", 0, "FILE.npy", RT_TO_TEXT(hits_from),
+     "Judge the hits of another program: those of --rays-from on SCENE, a row per ray with the fields t (in "
+     "lengths of the direction) and object (-1 for a miss), as `raytally bench --hits` writes it; or "
+     "float32, t "
+     "alone (inf for a miss). No accelerator is verified unless --accel names one"},
+    {"wrong-rays", 0, "FILE.npy", RT_TO_PATH(work.wrong_rays, RT_CLI_ROWS),
+     "Write the rays with a wrong answer to FILE, as --rays-from and `raytally trace --ray FILE.npy:0` read "
+     "it"},
     {"seed", 's', "S", RT_TO_INTEGER(work.rays.seed, 0, INT64_MAX),
      "Seed of the random rays and of the families of scenes (default 1)"},
     {"threads", 't', "N", RT_TO_INTEGER(work.rays.threads, 0, 1024),
@@ -212,7 +224,7 @@ static RtStatus add_named(Options *o, const char *text, RtError *error) {
 
 static RtStatus choose(Options *o, RtError *error) {
     RtVerifyRays *rays = &o->work.rays;
-    if (o->accel_count == 0) o->accels[o->accel_count++] = "all";
+    if (o->accel_count == 0 && !o->hits_from) o->accels[o->accel_count++] = "all";
     if (rays->count == 0) rays->count = o->quick ? QUICK_RAYS : MANY_RAYS;
     o->work.scenes = o->scenes;
     o->work.specs = o->specs;
@@ -222,6 +234,12 @@ static RtStatus choose(Options *o, RtError *error) {
         if (!all) RT_TRY(add_named(o, o->accels[i], error));
         for (size_t k = 0; all && k < rt_accel_count(); k++)
             RT_TRY(add_registered(o, rt_accel_at(k), true, error));
+    }
+    if (o->hits_from && strlen(o->hits_from) >= RT_MAX_SPEC_CHARS)
+        return rt_fail(error, RT_BAD_INPUT, "%s: this name is too long", o->hits_from);
+    if (o->hits_from) {
+        RT_TRY(add_spec(o, o->hits_from, true, true, error));
+        o->specs[o->work.spec_count - 1].recorded = true;
     }
     if (!o->rays_from) return RT_OK;
     RT_TRY(rt_rays_load(o->rays_from, RT_RAY_RANDOM, &o->given_rays, error));
@@ -273,27 +291,46 @@ static void print_header(Show *show) {
     rt_table_line(&columns, show->widths, NULL, stdout);
 }
 
-static void print_row(Show *show, const json_t *row) {
+static void print_replay(const json_t *wrong) {
     char plugins[1024] = "";
-    const json_t *wrong = json_object_get(row, "first_wrong"), *left = json_object_get(wrong, "objects_left");
+    const json_t *left = json_object_get(wrong, "objects_left");
+    if (json_is_null(left)) {
+        printf("    Traced again, the answer is right. ");
+    } else if (json_is_true(json_object_get(wrong, "shrunk"))) {
+        printf("    Reduced to %lld object%s. ", (long long)json_integer_value(left),
+               rt_plural((uint64_t)json_integer_value(left)));
+    } else {
+        printf("    The scene is not reduced: only the first failures are (--shrink). ");
+    }
+    rt_cli_plugin_arguments(plugins, sizeof plugins);
+    if (json_is_null(json_object_get(wrong, "replay")))
+        puts("The replay file could not be written.");
+    else
+        printf("To repeat: raytally verify --replay '%s'%s\n", rt_json_text(wrong, "replay", ""), plugins);
+}
+
+/* Of a recorded answer: how to trace its ray, if there is no file in the whole scene. */
+static void print_near(const json_t *wrong, const char *scene) {
+    const json_t *org = json_object_get(wrong, "org"), *dir = json_object_get(wrong, "dir");
+    const char *path = rt_json_text(wrong, "replay", "");
+    const long long near = json_integer_value(json_object_get(wrong, "objects_left"));
+    printf("    %lld object%s near the ray%s. To see it:\n    raytally trace '%s' --ray ", near,
+           near == 1 ? " is" : "s are", *path ? ", kept in a scene of its own" : "", *path ? path : scene);
+    for (size_t a = 0; a < 3; a++) printf("%s,", json_string_value(json_array_get(org, a)));
+    for (size_t a = 0; a < 3; a++) printf("%s,", json_string_value(json_array_get(dir, a)));
+    printf("%s,%s --svg ray.svg\n", rt_json_text(wrong, "tmin", ""), rt_json_text(wrong, "tmax", ""));
+}
+
+static void print_row(Show *show, const json_t *row) {
+    const json_t *wrong = json_object_get(row, "first_wrong");
     print_header(show);
     rt_table_line(&columns, show->widths, row, stdout);
     if (!json_is_null(wrong)) {
         printf("    WRONG: %s\n", rt_json_text(wrong, "says", ""));
-        if (json_is_null(left)) {
-            printf("    Traced again, the answer is right. ");
-        } else if (json_is_true(json_object_get(wrong, "shrunk"))) {
-            printf("    Reduced to %lld object%s. ", (long long)json_integer_value(left),
-                   rt_plural((uint64_t)json_integer_value(left)));
-        } else {
-            printf("    The scene is not reduced: only the first failures are (--shrink). ");
-        }
-        rt_cli_plugin_arguments(plugins, sizeof plugins);
-        if (json_is_null(json_object_get(wrong, "replay")))
-            puts("The replay file could not be written.");
+        if (json_is_null(json_object_get(wrong, "kernel")))
+            print_near(wrong, rt_json_text(row, "scene", ""));
         else
-            printf("To repeat: raytally verify --replay '%s'%s\n", rt_json_text(wrong, "replay", ""),
-                   plugins);
+            print_replay(wrong);
     }
     fflush(stdout);
 }

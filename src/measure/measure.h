@@ -140,24 +140,36 @@ RtStatus rt_measure_learning(const RtAccel *accel, const RtRaySet *set, const Rt
 
 /* ---- files (ray_file.c) ---- */
 
-/* Ray sets as NumPy arrays (.npy): rays may come from any other renderer, and answers and counts may go to
- * any other program. docs/guide/own-rays.md describes the files. */
+/* Ray sets as NumPy arrays, or with the extension .csv as text: rays and answers may come from any other
+ * renderer, and answers and counts may go to any other program. docs/guide/own-rays.md describes the files.
+ */
 
 /* Floats per row: origin, tmin, direction, tmax. */
 #define RT_RAY_COLUMNS 8
 
-/* Writes the rays, whole or not at all: float32, one row each. */
+/* The broken invariant of a ray that is not valid (rt_ray_is_valid), as in "its direction is zero". */
+const char *rt_ray_fault(const RtRay *ray);
+
+/* Writes the rays, whole or not at all: float32, one row each; as text with nine digits, which read back to
+ * the same bits. */
 RtStatus rt_rays_save(const RtRaySet *set, const char *path, RtError *error);
 
-/* Reads rays; they get the kind `kind` and source 0. Rejects an empty file, and an invalid ray
- * (rt_ray_is_valid) by its row. Free with rt_rayset_clear. */
+/* Reads rays; they get the kind `kind` and source 0. A text has the columns ox,oy,oz,tmin,dx,dy,dz,tmax in
+ * any order, among others; without tmin and tmax it is 0 to infinity. Rejects an empty file, and an invalid
+ * ray (rt_ray_is_valid) by its row. Free with rt_rayset_clear. */
 RtStatus rt_rays_load(const char *path, RtRayKind kind, RtRaySet *set, RtError *error);
 
-/* Writes an array of the hit of each ray: fields t (float32; inf for a miss) and object (int64; -1 for a
- * miss); for any-hit kinds, an array of bool. */
-void rt_hits_put(const RtRows *rows, FILE *out);
+/* Writes the hit of each ray, in the format of the extension of `path`: fields t (float32; inf for a miss)
+ * and object (int64; -1 for a miss); for any-hit kinds bools, in a text the column `blocked`. */
+void rt_hits_put(const RtRows *rows, const char *path, FILE *out);
 
-/* Writes an array of the cost of each ray: a field of uint64 for each counter. */
-void rt_counts_put(const RtRows *rows, FILE *out);
+/* Reads the hits of `rays` rays by any program on a scene of `objects` objects to (*hits)[0..rays), owned
+ * (rt_free): what rt_hits_put writes, with an `object` of 4 or 8 bytes, signed or not, all bits of which are
+ * set for a miss, and other fields, which are ignored; or an array of t, infinity for a miss, which become
+ * hits of RT_UNNAMED_OBJECT. Rejects other lengths and, by its row, an object that is not in the scene. */
+RtStatus rt_hits_load(const char *path, uint64_t rays, uint32_t objects, RtHit **hits, RtError *error);
+
+/* Writes the cost of each ray likewise: a field of uint64 for each counter. */
+void rt_counts_put(const RtRows *rows, const char *path, FILE *out);
 
 #endif

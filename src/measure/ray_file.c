@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A file begins with magic bytes, a version, and the length of the header, which is a Python dictionary as
- * text (NumPy Enhancement Proposal 1); then the numbers follow as they lie in memory. Input is not trusted:
- * the version must be 1.0, 2.0 or 3.0, the dictionary must have exactly the three keys of the format, and the
- * file must be as long as it says. */
+/* A file of an array begins with magic bytes, a version, and the length of the header, which is a Python
+ * dictionary as text (NumPy Enhancement Proposal 1); then the numbers follow as they lie in memory. Input is
+ * not trusted: the version must be 1.0, 2.0 or 3.0, the dictionary must have exactly the three keys of the
+ * format, and the file must be as long as it says. A text, .csv, has a line that names its columns, then a
+ * line per row, which becomes the bytes that it would be in an array. */
 #include "measure/measure.h"
 
 #include "core/base/file.h"
@@ -23,9 +24,10 @@ _Static_assert(offsetof(RtRay, org) == 0 && offsetof(RtRay, tmin) == 3 * sizeof(
                "a ray begins with its row");
 
 enum {
-    BLOCK = 1024, /* rows read at a time */
     MAGIC_BYTES = 6,
     MOST_HEADER = 4096, /* bytes of text; an array of numbers needs about a hundred */
+    MOST_ROW = 4096,    /* bytes of a hit with other fields, or of a line of text */
+    MOST_COLUMNS = 64,  /* of a text */
     MULTIPLE = 64       /* alignment of the numbers */
 };
 static const char MAGIC[MAGIC_BYTES + 1] = "\x93NUMPY";
@@ -72,55 +74,214 @@ static json_t *parse(const char *text) {
     return json_loadb(json, length, JSON_REJECT_DUPLICATES, NULL);
 }
 
-static RtStatus check_header(const json_t *header, const char *text, const char *path, uint64_t *rows,
-                             RtError *error) {
+/* A file of rows, and in it: an array in C order, or a text with the extension .csv. */
+typedef struct Source Source;
+
+typedef struct Form {
+    /* Sets the layout of rows from the type and the other dimensions of an array; false if they are others.
+     */
+    bool (*take)(const json_t *descr, const json_t *shape, Source *source);
+    const char *array;                 /* what it takes */
+    const char *names[RT_RAY_COLUMNS]; /* [count] of columns of a text, in the order of its own files */
+    int count;
+    uint32_t needed; /* bits 1 << index */
+} Form;
+
+struct Source {
+    FILE *file;
+    const char *path;
+    const Form *form;
+    uint64_t rows;
+    size_t bytes; /* of a row */
+    /* Of rows of hits: where t is, and an integer of 4 or 8 bytes; 0 bytes: there is none. */
+    size_t t, object, object_bytes;
+    bool text;
+    int columns[MOST_COLUMNS], column_count; /* of a text: indices into form->names, -1 for others */
+};
+
+static RtStatus fail_to_read(const Source *s, RtError *error) {
+    return rt_fail(error, RT_IO, "%s: reading failed before the last row", s->path);
+}
+
+static bool is_type(const json_t *descr, const char *type) {
+    return json_is_string(descr) && strcmp(json_string_value(descr), type) == 0;
+}
+
+static bool take_rays(const json_t *descr, const json_t *shape, Source *s) {
+    s->bytes = RT_RAY_COLUMNS * sizeof(float);
+    return is_type(descr, "<f4") && json_array_size(shape) == 2 &&
+           json_integer_value(json_array_get(shape, 1)) == RT_RAY_COLUMNS;
+}
+
+static bool take_hits(const json_t *descr, const json_t *shape, Source *s) {
+    const size_t dimensions = json_array_size(shape);
+    const json_t *field;
+    size_t i;
+    bool t = false;
+    s->bytes = sizeof(float);
+    if (is_type(descr, "<f4"))
+        return dimensions == 1 || (dimensions == 2 && json_integer_value(json_array_get(shape, 1)) == 1);
+    s->bytes = 0;
+    json_array_foreach(descr, i, field) {
+        const char *name = json_string_value(json_array_get(field, 0));
+        const char *type = json_string_value(json_array_get(field, 1));
+        const bool sized = type && strlen(type) > 2 && strchr("biufV", type[1]);
+        const size_t bytes = sized ? strtoul(type + 2, NULL, 10) : 0;
+        if (!name || bytes == 0 || bytes > MOST_ROW || json_array_size(field) != 2) return false;
+        if (strcmp(name, "t") == 0) {
+            s->t = s->bytes;
+            t = strcmp(type, "<f4") == 0;
+        } else if (strcmp(name, "object") == 0) {
+            const bool integer = strncmp(type, "<i", 2) == 0 || strncmp(type, "<u", 2) == 0;
+            if (!integer || (bytes != sizeof(uint32_t) && bytes != sizeof(uint64_t))) return false;
+            s->object = s->bytes;
+            s->object_bytes = bytes;
+        }
+        s->bytes += bytes;
+    }
+    return t && s->object_bytes > 0 && s->bytes <= MOST_ROW && dimensions == 1;
+}
+
+static const Form rays_form = {.take = take_rays,
+                               .array = "float32 of the shape (N, 8), as from array.astype('float32')",
+                               .names = {"ox", "oy", "oz", "tmin", "dx", "dy", "dz", "tmax"},
+                               .count = RT_RAY_COLUMNS,
+                               .needed = 0x77};
+enum { T, OBJECT };
+static const Form hits_form = {
+    .take = take_hits,
+    .array =
+        "float32 of the shape (N,), the t of each hit, or (N,) of fields 't' (float32) and 'object' (int32, "
+        "uint32, int64 or uint64), as in numpy.dtype([('t', '<f4'), ('object', '<i8')])",
+    .names = {[T] = "t", [OBJECT] = "object"},
+    .count = 2,
+    .needed = 1 << T};
+
+static RtStatus check_header(const json_t *header, const char *text, Source *s, RtError *error) {
     const json_t *descr = json_object_get(header, "descr"), *shape = json_object_get(header, "shape");
     const json_t *order = json_object_get(header, "fortran_order");
-    const json_int_t count = json_integer_value(json_array_get(shape, 0)),
-                     columns = json_integer_value(json_array_get(shape, 1));
-    const char *type = json_is_string(descr) ? json_string_value(descr) : "[...]"; /* a structured type */
+    const json_int_t count = json_integer_value(json_array_get(shape, 0));
     if (!descr || !json_is_array(shape) || !json_is_boolean(order) || json_object_size(header) != 3 ||
         count < 0)
         return rt_fail(error, RT_BAD_INPUT,
                        "%s: the header is not {'descr': ..., 'fortran_order': ..., 'shape': ...}: %.80s",
-                       path, text);
-    if (strcmp(type, "<f4") != 0)
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s: numbers of type %s: expected '<f4', as from array.astype('float32')", path, type);
+                       s->path, text);
     if (json_is_true(order))
         return rt_fail(error, RT_BAD_INPUT,
                        "%s: the array is column-major: expected row-major, as from numpy.ascontiguousarray",
-                       path);
-    if (json_array_size(shape) != 2 || columns != RT_RAY_COLUMNS)
+                       s->path);
+    s->rows = (uint64_t)count;
+    if (s->form->take(descr, shape, s)) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "%s: expected %s; this is %.*s", s->path, s->form->array,
+                   (int)strcspn(text, "}") + 1, text);
+}
+
+static RtStatus open_array(Source *s, RtError *error) {
+    char text[MOST_HEADER + 1];
+    struct stat info;
+    RT_TRY(read_header(s->file, s->path, text, error));
+    json_t *header = parse(text);
+    RtStatus status = check_header(header, text, s, error);
+    json_decref(header);
+    RT_TRY(status);
+    const long start = ftell(s->file);
+    if (start < 0 || fstat(fileno(s->file), &info) != 0)
+        return rt_fail(error, RT_IO, "%s: its length is unknown", s->path);
+    const uint64_t there = (uint64_t)info.st_size - (uint64_t)start;
+    if (s->rows > RT_MAX_RAYS_A_KIND || s->rows * s->bytes == there) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: %" PRIu64 " rows of %zu bytes are %" PRIu64 " bytes, but %" PRIu64
+                   " follow the header: was the file cut off?",
+                   s->path, s->rows, s->bytes, s->rows * s->bytes, there);
+}
+
+/* ---- text: a line of names, then a line per row ---- */
+
+static bool is_text(const char *path) {
+    const size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".csv") == 0;
+}
+
+/* The next line that is not empty, without its end; false if there is none. */
+static bool read_line(FILE *file, char line[MOST_ROW]) {
+    do {
+        if (!fgets(line, MOST_ROW, file)) return false;
+        line[strcspn(line, "\r\n")] = '\0';
+    } while (!*line);
+    return true;
+}
+
+static RtStatus open_text(Source *s, RtError *error) {
+    char line[MOST_ROW] = "", *rest = line;
+    uint32_t found = 0;
+    read_line(s->file, line);
+    for (const char *word; s->column_count < MOST_COLUMNS && (word = strsep(&rest, ",")); s->column_count++) {
+        int k = s->form->count - 1;
+        while (k >= 0 && strcmp(word + strspn(word, " "), s->form->names[k]) != 0) k--;
+        s->columns[s->column_count] = k;
+        if (k >= 0) found |= 1u << k;
+    }
+    if ((found & s->form->needed) != s->form->needed)
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s: an array of %zu dimension%s, and rows of %" PRId64 ": expected the shape (N, %d)",
-                       path, json_array_size(shape), rt_plural(json_array_size(shape)), (int64_t)columns,
-                       RT_RAY_COLUMNS);
-    *rows = (uint64_t)count;
-    if (*rows <= RT_MAX_RAYS_A_KIND) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "%s: %" PRIu64 " rows: at most %" PRIu64 " are read", path, *rows,
+                       "%s: the first line names the columns: expected %s among at most %d", s->path,
+                       s->form == &rays_form ? "ox,oy,oz,tmin,dx,dy,dz,tmax, with or without tmin and tmax,"
+                                             : "t,object or t",
+                       MOST_COLUMNS);
+    const long start = ftell(s->file);
+    while (read_line(s->file, line)) s->rows++;
+    if (start < 0 || ferror(s->file) || fseek(s->file, start, SEEK_SET) != 0) return fail_to_read(s, error);
+    s->object = sizeof(int64_t);
+    if (s->form == &hits_form && found >> OBJECT & 1) s->object_bytes = sizeof(int64_t);
+    return RT_OK;
+}
+
+/* As in an array: floats one after the other; `object` of 8 bytes behind the first two. */
+static RtStatus read_words(Source *s, uint64_t row, char *bytes, RtError *error) {
+    static const float defaults[RT_RAY_COLUMNS] = {[7] = INFINITY};
+    char line[MOST_ROW] = "", *rest = line, *word, *end;
+    int column = 0;
+    memcpy(bytes, defaults, sizeof defaults);
+    if (!read_line(s->file, line)) return fail_to_read(s, error);
+    for (; (word = strsep(&rest, ",")) && column < s->column_count; column++) {
+        const int k = s->columns[column];
+        const bool integer = s->form == &hits_form && k == OBJECT;
+        if (k < 0) continue;
+        const float number = strtof(word, &end);
+        const int64_t object = integer ? strtoll(word, &end, 10) : 0;
+        if (end == word || *end)
+            return rt_fail(error, RT_BAD_INPUT, "%s: row %" PRIu64 " (the first is 0): %s is '%s': no %s",
+                           s->path, row, s->form->names[k], word, integer ? "integer" : "number");
+        if (integer)
+            memcpy(bytes + s->object, &object, sizeof object);
+        else
+            memcpy(bytes + (size_t)k * sizeof number, &number, sizeof number);
+    }
+    if (!word && column == s->column_count) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: row %" PRIu64 " (the first is 0) has not the %d columns of the first line", s->path,
+                   row, s->column_count);
+}
+
+/* ---- rows ---- */
+
+/* Call close_rows also after a failure. */
+static RtStatus open_rows(Source *s, const char *path, const Form *form, RtError *error) {
+    *s = (Source){.path = path, .form = form, .text = is_text(path)};
+    RT_TRY(rt_file_open(path, &s->file, error));
+    RT_TRY((s->text ? open_text : open_array)(s, error));
+    if (s->rows <= RT_MAX_RAYS_A_KIND) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "%s: %" PRIu64 " rows: at most %" PRIu64 " are read", path, s->rows,
                    (uint64_t)RT_MAX_RAYS_A_KIND);
 }
 
-/* An array of float32 in C order, of shape (rows, RT_RAY_COLUMNS); the file stays open at the first row. */
-static RtStatus read_shape(FILE *file, const char *path, uint64_t *rows, RtError *error) {
-    char text[MOST_HEADER + 1];
-    struct stat info;
-    RT_TRY(read_header(file, path, text, error));
-    json_t *header = parse(text);
-    RtStatus status = check_header(header, text, path, rows, error);
-    json_decref(header);
-    RT_TRY(status);
-    const long start = ftell(file);
-    if (start < 0 || fstat(fileno(file), &info) != 0)
-        return rt_fail(error, RT_IO, "%s: its length is unknown", path);
-    const uint64_t wanted = *rows * RT_RAY_COLUMNS * sizeof(float),
-                   there = (uint64_t)info.st_size - (uint64_t)start;
-    if (wanted == there) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "%s: %" PRIu64 " rows of %d numbers are %" PRIu64 " bytes, but %" PRIu64
-                   " follow the header: was the file cut off?",
-                   path, *rows, RT_RAY_COLUMNS, wanted, there);
+static void close_rows(Source *s) {
+    if (s->file) fclose(s->file);
+}
+
+static RtStatus read_row(Source *s, uint64_t row, char bytes[MOST_ROW], RtError *error) {
+    if (s->text) return read_words(s, row, bytes, error);
+    if (fread(bytes, s->bytes, 1, s->file) == 1) return RT_OK;
+    return fail_to_read(s, error);
 }
 
 /* ---- writing headers ---- */
@@ -145,17 +306,23 @@ static void begin(FILE *out, const char *descr, uint64_t rows, uint32_t columns)
 /* ---- rays ---- */
 
 RtStatus rt_rays_save(const RtRaySet *set, const char *path, RtError *error) {
+    const bool text = is_text(path);
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));
-    begin(output.file, "'<f4'", set->count, RT_RAY_COLUMNS);
+    if (!text) begin(output.file, "'<f4'", set->count, RT_RAY_COLUMNS);
+    for (int k = 0; text && k < RT_RAY_COLUMNS; k++)
+        fprintf(output.file, "%s%c", rays_form.names[k], k < RT_RAY_COLUMNS - 1 ? ',' : '\n');
     for (uint64_t i = 0; i < set->count; i++) {
-        fwrite(&set->rays[i], sizeof(float), RT_RAY_COLUMNS, output.file);
+        float row[RT_RAY_COLUMNS];
+        memcpy(row, &set->rays[i], sizeof row);
+        if (!text) fwrite(row, sizeof row, 1, output.file);
+        for (int k = 0; text && k < RT_RAY_COLUMNS; k++)
+            fprintf(output.file, "%.9g%c", (double)row[k], k < RT_RAY_COLUMNS - 1 ? ',' : '\n');
     }
     return rt_output_commit(&output, error);
 }
 
-/* The broken invariant of rt_ray_is_valid. */
-static const char *fault_of(const RtRay *ray) {
+const char *rt_ray_fault(const RtRay *ray) {
     float size = rt_maxf(rt_maxf(fabsf(ray->org.x), fabsf(ray->org.y)), fabsf(ray->org.z));
     if (!rt_finite(ray->org) || size > RT_MAX_COORDINATE) return "its origin is not finite, or beyond 5e17";
     if (!rt_finite(ray->dir)) return "its direction is not finite";
@@ -164,39 +331,29 @@ static const char *fault_of(const RtRay *ray) {
     return "its tmax is less than its tmin, or not a number";
 }
 
-static RtStatus read_rays(FILE *file, const char *path, RtRaySet *set, RtError *error) {
-    float rows[BLOCK][RT_RAY_COLUMNS];
-    for (uint64_t first = 0; first < set->count; first += BLOCK) {
-        uint64_t count = set->count - first < BLOCK ? set->count - first : BLOCK;
-        if (fread(rows, sizeof rows[0], count, file) != count)
-            return rt_fail(error, RT_IO, "%s: reading failed before the last row", path);
-        for (uint64_t i = 0; i < count; i++) {
-            RtRay *ray = &set->rays[first + i];
-            *ray = (RtRay){.kind = set->kind};
-            memcpy(ray, rows[i], sizeof rows[i]);
-            if (rt_ray_is_valid(ray)) continue;
-            return rt_fail(error, RT_BAD_INPUT,
-                           "%s: row %" PRIu64
-                           " (the first is 0) is not a valid ray: %s. It has origin %.9g %.9g %.9g, tmin "
-                           "%.9g, direction %.9g %.9g %.9g, tmax %.9g",
-                           path, first + i, fault_of(ray), (double)rows[i][0], (double)rows[i][1],
-                           (double)rows[i][2], (double)rows[i][3], (double)rows[i][4], (double)rows[i][5],
-                           (double)rows[i][6], (double)rows[i][7]);
-        }
+static RtStatus read_rays(Source *source, RtRaySet *set, RtError *error) {
+    char bytes[MOST_ROW];
+    for (uint64_t i = 0; i < set->count; i++) {
+        RtRay *ray = &set->rays[i];
+        char says[RT_RAY_TEXT];
+        RT_TRY(read_row(source, i, bytes, error));
+        *ray = (RtRay){.kind = set->kind};
+        memcpy(ray, bytes, RT_RAY_COLUMNS * sizeof(float));
+        if (rt_ray_is_valid(ray)) continue;
+        rt_ray_format(ray, says, sizeof says);
+        return rt_fail(error, RT_BAD_INPUT, "%s: row %" PRIu64 " (the first is 0) is not a valid ray: %s: %s",
+                       source->path, i, rt_ray_fault(ray), says);
     }
     return RT_OK;
 }
 
 RtStatus rt_rays_load(const char *path, RtRayKind kind, RtRaySet *set, RtError *error) {
-    FILE *file;
-    uint64_t rows;
+    RT_OWNED(Source, source, close_rows);
     *set = (RtRaySet){.kind = kind};
-    RT_TRY(rt_file_open(path, &file, error));
-    RtStatus status = read_shape(file, path, &rows, error);
-    if (status == RT_OK && rows == 0) status = rt_fail(error, RT_BAD_INPUT, "%s: it contains no rays", path);
-    if (status == RT_OK) status = rt_rayset_init(set, kind, rows, error);
-    if (status == RT_OK) status = read_rays(file, path, set, error);
-    fclose(file);
+    RT_TRY(open_rows(&source, path, &rays_form, error));
+    if (source.rows == 0) return rt_fail(error, RT_BAD_INPUT, "%s: it contains no rays", path);
+    RT_TRY(rt_rayset_init(set, kind, source.rows, error));
+    const RtStatus status = read_rays(&source, set, error);
     if (status == RT_OK)
         rt_rayset_seal(set);
     else
@@ -206,19 +363,83 @@ RtStatus rt_rays_load(const char *path, RtRayKind kind, RtRaySet *set, RtError *
 
 /* ---- answers and counts ---- */
 
-void rt_hits_put(const RtRows *rows, FILE *out) {
-    begin(out, rows->blocked ? "'|b1'" : "[('t', '<f4'), ('object', '<i8')]", rows->count, 0);
-    if (rows->blocked) fwrite(rows->blocked, sizeof(bool), rows->count, out);
+/* The hit of a row: no object, or all bits of it set, is a miss or a t alone. */
+static RtStatus take_hit(const Source *s, uint64_t row, const char *bytes, uint32_t objects, RtHit *hit,
+                         RtError *error) {
+    int64_t object = -1;
+    *hit = (RtHit){.object = RT_UNNAMED_OBJECT};
+    memcpy(&hit->t, bytes + s->t, sizeof hit->t);
+    memcpy(&object, bytes + s->object, s->object_bytes);
+    if (s->object_bytes == sizeof(int32_t)) object = (int32_t)object;
+    if (s->object_bytes > 0 ? object == -1 : hit->t == INFINITY) *hit = RT_MISS;
+    if (s->object_bytes == 0 && !(hit->t >= 0))
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: row %" PRIu64 " (the first is 0): t is %g: a miss is written as infinity",
+                       s->path, row, (double)hit->t);
+    if (hit->object == RT_NO_OBJECT || s->object_bytes == 0) return RT_OK;
+    hit->object = (uint32_t)object;
+    if (object >= 0 && object < (int64_t)objects) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: row %" PRIu64 " (the first is 0): there is no object %" PRId64
+                   ": the scene has %" PRIu32 ", from 0 on; a miss is object -1",
+                   s->path, row, object, objects);
+}
+
+RtStatus rt_hits_load(const char *path, uint64_t rays, uint32_t objects, RtHit **hits, RtError *error) {
+    RT_OWNED(Source, source, close_rows);
+    char bytes[MOST_ROW];
+    RtStatus status = RT_OK;
+    *hits = NULL;
+    RT_TRY(open_rows(&source, path, &hits_form, error));
+    if (source.rows != rays)
+        return rt_fail(error, RT_BAD_INPUT, "%s: %" PRIu64 " hit%s for %" PRIu64 " ray%s", path, source.rows,
+                       rt_plural(source.rows), rays, rt_plural(rays));
+    *hits = rt_alloc(rays, sizeof(RtHit));
+    if (!*hits) return rt_fail_memory(error, "hits", rays * sizeof(RtHit));
+    for (uint64_t i = 0; i < rays && status == RT_OK; i++) {
+        status = read_row(&source, i, bytes, error);
+        if (status == RT_OK) status = take_hit(&source, i, bytes, objects, &(*hits)[i], error);
+    }
+    if (status == RT_OK) return RT_OK;
+    rt_free(*hits);
+    *hits = NULL;
+    return status;
+}
+
+void rt_hits_put(const RtRows *rows, const char *path, FILE *out) {
+    const bool text = is_text(path);
+    if (text)
+        fputs(rows->blocked ? "blocked\n" : "t,object\n", out);
+    else
+        begin(out, rows->blocked ? "'|b1'" : "[('t', '<f4'), ('object', '<i8')]", rows->count, 0);
+    for (uint64_t i = 0; rows->blocked && i < rows->count; i++) {
+        if (text)
+            fprintf(out, "%d\n", rows->blocked[i]);
+        else
+            fwrite(&rows->blocked[i], sizeof(bool), 1, out);
+    }
     for (uint64_t i = 0; rows->hits && i < rows->count; i++) {
         int64_t object = rows->hits[i].object == RT_NO_OBJECT ? -1 : (int64_t)rows->hits[i].object;
+        if (text) {
+            fprintf(out, "%.9g,%" PRId64 "\n", (double)rows->hits[i].t, object);
+            continue;
+        }
         fwrite(&rows->hits[i].t, sizeof(float), 1, out);
         fwrite(&object, sizeof object, 1, out);
     }
 }
 
-void rt_counts_put(const RtRows *rows, FILE *out) {
+void rt_counts_put(const RtRows *rows, const char *path, FILE *out) {
+    const bool text = is_text(path);
 #define FIELD(name, meaning) "('" #name "', '<u8'), "
-    begin(out, "[" RT_TALLY_COUNTERS(FIELD) "]", rows->count, 0);
-    fwrite(rows->tallies, sizeof(RtTally), rows->count, out);
+    if (!text) begin(out, "[" RT_TALLY_COUNTERS(FIELD) "]", rows->count, 0);
+    if (!text) fwrite(rows->tallies, sizeof(RtTally), rows->count, out);
 #undef FIELD
+    for (size_t k = 0; text && k < RT_TALLY_COUNTER_COUNT; k++)
+        fprintf(out, "%s%c", rt_tally_name(k), k + 1 < RT_TALLY_COUNTER_COUNT ? ',' : '\n');
+    for (uint64_t i = 0; text && i < rows->count; i++) {
+        for (size_t k = 0; k < RT_TALLY_COUNTER_COUNT; k++)
+            fprintf(out, "%" PRIu64 "%c", rt_tally_get(&rows->tallies[i], k),
+                    k + 1 < RT_TALLY_COUNTER_COUNT ? ',' : '\n');
+    }
 }

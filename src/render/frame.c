@@ -283,7 +283,14 @@ static RtStatus trace_level(Worker *worker, uint32_t depth, RtError *error) {
 static void make_primary_rays(Worker *worker, Level *level) {
     const Job *job = worker->job;
     const RtSampling *s = &job->view.sampling;
+    const RtFrameObserver *observer = job->options->observer;
     level->count = 0;
+    if (observer && observer->given) {
+        const RtSample sample = job->tiles[worker->tile];
+        level->rays[0] = *observer->given;
+        level->paths[level->count++] = (Path){sample.row * s->columns + sample.column, 1, RT_NO_RAY};
+        return;
+    }
     for (uint32_t i = 0; i < RT_TILE * RT_TILE; i++) {
         RtSample sample = rt_tile_sample(job->tiles[worker->tile], i);
         if (sample.column >= s->columns || sample.row >= s->rows) continue;

@@ -83,6 +83,8 @@ typedef struct RtFrameRay {
  * their light is added. */
 typedef struct RtFrameObserver {
     RtSample tile; /* of rt_tile_of */
+    const RtRay
+        *given; /* NULL, or a valid ray to trace as the primary ray of the tile's first sample, alone */
     void (*see)(void *context, RtSample sample, const RtFrameRay *ray);
     void *context;
 } RtFrameObserver;

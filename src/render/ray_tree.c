@@ -100,21 +100,34 @@ static RtStatus finish_all(RtRayTree *trees, const RtAccel *accel, uint32_t coun
     return rt_accel_check(accel, error);
 }
 
-RtStatus rt_ray_trees_trace(RtRayTree *trees, const RtAccel *accel, const RtSample *samples, uint32_t count,
-                            uint32_t depth, RtError *error) {
+static RtStatus trace(RtRayTree *trees, const RtAccel *accel, const RtSample *samples, uint32_t count,
+                      const RtRay *given, uint32_t depth, RtError *error) {
     RT_OWNED(RtFrame, frame, rt_frame_clear);
     Recorder recorder = {.status = RT_OK, .error = error};
     for (uint32_t i = 0; i < count; i++) {
         trees[i] = (RtRayTree){.depth = depth};
         recorder.of[rt_tile_place(samples[i])] = &trees[i];
     }
-    const RtFrameObserver observer = {rt_tile_of(samples[0]), record, &recorder};
+    const RtFrameObserver observer = {rt_tile_of(samples[0]), given, record, &recorder};
     const RtFrameOptions options = {.depth = depth, .threads = 1, .observer = &observer};
     RtStatus status = rt_frame_trace(&frame, accel, &options, error);
     if (status == RT_OK) status = recorder.status;
     if (status == RT_OK) status = finish_all(trees, accel, count, error);
     for (uint32_t i = 0; i < count && status != RT_OK; i++) rt_ray_tree_clear(&trees[i]);
     return status;
+}
+
+RtStatus rt_ray_trees_trace(RtRayTree *trees, const RtAccel *accel, const RtSample *samples, uint32_t count,
+                            uint32_t depth, RtError *error) {
+    return trace(trees, accel, samples, count, NULL, depth, error);
+}
+
+RtStatus rt_ray_tree_trace_given(RtRayTree *tree, const RtAccel *accel, const RtRay *given, uint32_t depth,
+                                 RtError *error) {
+    RtRay ray = *given;
+    ray.kind = RT_RAY_PRIMARY;
+    ray.source = RT_NO_RAY;
+    return trace(tree, accel, &(RtSample){0, 0}, 1, &ray, depth, error);
 }
 
 void rt_ray_tree_clear(RtRayTree *tree) {

@@ -61,6 +61,11 @@ typedef struct RtRayTree {
 RtStatus rt_ray_trees_trace(RtRayTree *trees, const RtAccel *accel, const RtSample *samples, uint32_t count,
                             uint32_t depth, RtError *error);
 
+/* The tree of a valid ray that is given in place of a sample's: it counts as primary, and its `source` is no
+ * sample's. The tree is empty after a failure. */
+RtStatus rt_ray_tree_trace_given(RtRayTree *tree, const RtAccel *accel, const RtRay *given, uint32_t depth,
+                                 RtError *error);
+
 /* The ray after `index`, depth first: its first child, or the next of a parent; RT_NO_RAY at the end. The
  * primary ray is the first. */
 uint32_t rt_ray_tree_next(const RtRayTree *tree, uint32_t index);

@@ -79,16 +79,17 @@ static json_t *accelerator_json(const RtRecordedPaths *paths, const RtExploredSp
 }
 
 /* Takes both references. */
-static json_t *page_json(const RtScene *scene, const RtRecordedPixels *recording, uint32_t depth,
-                         json_t *scene_data, json_t *accelerators) {
+static json_t *page_json(const RtScene *scene, const RtRecordedPixels *recording,
+                         const RtExploreOptions *options, json_t *scene_data, json_t *accelerators) {
     const RtSampling *s = &scene->sampling;
-    return json_pack("{s:i, s:i, s:i, s:i, s:i, s:I, s:I, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o}", "width",
-                     (int)s->width, "height", (int)s->height, "stride", (int)recording->stride, "columns",
-                     (int)recording->columns, "rows", (int)recording->rows, "rays",
-                     (json_int_t)recording->ray_count, "cut", (json_int_t)recording->cut_count, "cell_map",
-                     RT_CELL_MAP, "most_rows", RT_MAX_RECORDED_ROWS, "depth", (int)depth, "counters",
-                     counters_json(), "kinds", names_json(kinds, RT_RAY_KIND_COUNT), "scale", scale_json(),
-                     "scene", scene_data, "accelerators", accelerators);
+    return json_pack("{s:b, s:i, s:i, s:i, s:i, s:i, s:I, s:I, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o}",
+                     "given", options->given != NULL, "width", (int)s->width, "height", (int)s->height,
+                     "stride", (int)recording->stride, "columns", (int)recording->columns, "rows",
+                     (int)recording->rows, "rays", (json_int_t)recording->ray_count, "cut",
+                     (json_int_t)recording->cut_count, "cell_map", RT_CELL_MAP, "most_rows",
+                     RT_MAX_RECORDED_ROWS, "depth", (int)options->depth, "counters", counters_json(), "kinds",
+                     names_json(kinds, RT_RAY_KIND_COUNT), "scale", scale_json(), "scene", scene_data,
+                     "accelerators", accelerators);
 }
 
 /* ---- the parts ---- */
@@ -140,7 +141,7 @@ static RtStatus embed_accelerator(const RtRecordedPaths *paths, uint32_t number,
 }
 
 static RtStatus write_page(FILE *out, const char *name, const RtRecordedPixels *recording,
-                           const RtExploredSpec *specs, uint32_t depth, RtError *error) {
+                           const RtExploredSpec *specs, const RtExploreOptions *options, RtError *error) {
     const RtScene *scene = recording->of[0].accel->scene;
     json_t *accelerators = json_array();
     RtBytes objects = {0};
@@ -161,11 +162,11 @@ static RtStatus write_page(FILE *out, const char *name, const RtRecordedPixels *
     uint32_t every = rt_explore_objects(scene, &objects);
     if (status == RT_OK)
         status = rt_page_data(
-            page_json(scene, recording, depth, scene_json(scene, name, every), accelerators), out, error);
+            page_json(scene, recording, options, scene_json(scene, name, every), accelerators), out, error);
     else
         json_decref(accelerators);
     rt_bytes_embed(&recording->rays, "rays", out);
-    if (status == RT_OK) status = embed_image(recording->of[0].accel, depth, out, error);
+    if (status == RT_OK) status = embed_image(recording->of[0].accel, options->depth, out, error);
     if (status == RT_OK) status = embed_shapes(&scene->geometry, out, error);
     if (status == RT_OK) status = embed(&objects, "objects", out, error);
     rt_bytes_clear(&objects);
@@ -185,7 +186,7 @@ RtStatus rt_explore_write(const char *path, const char *name, RtAccel *const *ac
     RtStatus status = rt_recorded_pixels_make(&recording, accels, count, options, error);
     if (status == RT_OK) {
         *stride = recording.stride;
-        status = write_page(output.file, name, &recording, specs, options->depth, error);
+        status = write_page(output.file, name, &recording, specs, options, error);
         rt_recorded_pixels_clear(&recording);
     }
     if (status == RT_OK) return rt_output_commit(&output, error);

@@ -12,6 +12,8 @@ enum { RT_MAX_EXPLORED = 4 }; /* accelerators of a page */
 
 typedef struct RtExploreOptions {
     uint32_t depth; /* levels of ray trees, 1..RT_MAX_DEPTH */
+    const RtRay
+        *given;     /* NULL, or a valid ray to show first, whose tree is recorded beside those of pixels */
     uint32_t bytes; /* of the recorded paths on the page, about: pixels are left out until they fit */
 } RtExploreOptions;
 

@@ -503,9 +503,17 @@ static RtStatus record_tile(RtRecordedPixels *recording, RtSample tile, uint32_t
     return status;
 }
 
+static RtStatus record_given(RtRecordedPixels *recording, const RtExploreOptions *options, RtError *error) {
+    RT_OWNED(RtRayTree, tree, rt_ray_tree_clear);
+    if (!options->given) return RT_OK;
+    RT_TRY(rt_ray_tree_trace_given(&tree, recording->of[0].accel, options->given, options->depth, error));
+    return record_tree(recording, recording->rows * recording->columns, &tree, error);
+}
+
 static RtStatus record_pixels(RtRecordedPixels *recording, const RtExploreOptions *options, bool *fits,
                               RtError *error) {
     const RtSampling *s = &recording->of[0].accel->scene->sampling;
+    RT_TRY(record_given(recording, options, error));
     for (uint32_t row = 0; row < s->height; row += RT_TILE) {
         for (uint32_t column = 0; column < s->width; column += RT_TILE) {
             RT_TRY(record_tile(recording, (RtSample){column, row}, options->depth, error));

@@ -6,7 +6,8 @@
  * All numbers are LEB128 but for floats and the lengths, u32, little-endian. An object is written as 0 for
  * none, 1 for one without a name, id + 2 otherwise.
  *
- *   rays:    for each pixel, tile by tile: its number (row * columns + column), its length, and the rays of
+ *   rays:    for each pixel, tile by tile, after the given ray, if there is one, as pixel rows * columns: its
+ *            number (row * columns + column), its length, and the rays of
  *            its tree (RtTreeRay) in the order in which the frame adds their light, each: kind, level,
  *            1 + parent or 0, source, total + 2 * cut, org[3], dir[3], tmax (floats), object, t, added[3]
  *            (floats), of a shadow ray the diffuse part of that (floats), of a primary ray the number of

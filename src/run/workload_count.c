@@ -188,18 +188,19 @@ static RtStatus open_file(const RtWorkloadState *workload, uint32_t c, RtRayKind
         if (*names[i]) rt_append_text(text, sizeof text, "%s%s", *text ? "-" : "", names[i]);
     if (!*text) return rt_output_open(output, file, error);
     rt_file_name(text, name, sizeof name);
-    const int stem = (int)(strlen(file) - strlen(".npy"));
-    if (snprintf(path, sizeof path, "%.*s-%s.npy", stem, file, name) >= RT_MAX_PATH)
+    const int stem = (int)(strlen(file) - strlen(".npy")); /* or .csv */
+    if (snprintf(path, sizeof path, "%.*s-%s%s", stem, file, name, file + stem) >= RT_MAX_PATH)
         return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
     return rt_output_open(output, path, error);
 }
 
 static RtStatus save_rows(const RtWorkloadState *workload, uint32_t c, RtRayKind kind, const RtRows *rows,
-                          void (*put)(const RtRows *rows, FILE *out), const char *file, RtError *error) {
+                          void (*put)(const RtRows *rows, const char *path, FILE *out), const char *file,
+                          RtError *error) {
     RtOutput output;
     if (!file) return RT_OK;
     RT_TRY(open_file(workload, c, kind, file, &output, error));
-    put(rows, output.file);
+    put(rows, file, output.file);
     return rt_output_commit(&output, error);
 }
 

@@ -54,9 +54,10 @@ typedef struct Job {
     const RtReference *reference;
     const RtAccel *accel;
     int threads;
-    Worker *workers;      /* [threads] */
-    RtEquivalence *parts; /* [chunks] parts of the result, when checking */
-    RtError recounted;    /* RT_BROKEN if chunk 0 was counted differently twice */
+    Worker *workers;       /* [threads] */
+    const RtHit *recorded; /* answers to judge instead of an accelerator's */
+    RtEquivalence *parts;  /* [chunks] parts of the result, when checking */
+    RtError recounted;     /* RT_BROKEN if chunk 0 was counted differently twice */
 } Job;
 
 /* Both kernels, in streams of one length; for an exact accelerator, whose answers must not depend on it,
@@ -73,16 +74,19 @@ static void choose_modes(Worker *worker, size_t chunk) {
 
 /* ---- work in chunks ---- */
 
+static size_t chunks_of(const Job *job) {
+    return (job->reference->count + CHUNK - 1) / CHUNK;
+}
+
 static RtStatus run(Job *job, RtWork work, RtError *error) {
     job->threads = rt_thread_count(job->threads);
-    const size_t chunks = (job->reference->count + CHUNK - 1) / CHUNK;
     RT_ARENA(memory);
     job->workers = rt_arena_alloc(&memory, (size_t)job->threads, sizeof(Worker));
     RtStatus status = rt_arena_check(&memory, "answers", error);
     for (int i = 0; i < job->threads && status == RT_OK; i++) {
         status = rt_query_init(&job->workers[i].query, job->accel, error);
     }
-    if (status == RT_OK) status = rt_parallel_for(chunks, job->threads, work, job, error);
+    if (status == RT_OK) status = rt_parallel_for(chunks_of(job), job->threads, work, job, error);
     if (status == RT_OK) status = rt_accel_check(job->accel, error);
     for (int i = 0; job->workers && i < job->threads; i++) rt_query_clear(&job->workers[i].query);
     return status;
@@ -105,17 +109,22 @@ static RtStatus refer_chunk(void *context, size_t chunk, int thread, RtError *er
 
 RtStatus rt_reference_init(RtReference *reference, const RtAccel *oracle, const RtRay *rays, size_t count,
                            int threads, RtError *error) {
-    *reference = (RtReference){
-        .scene = oracle->scene, .rays = rays, .count = count, .hits = rt_alloc(count, sizeof(RtHit))};
-    if (!reference->hits) return rt_fail_memory(error, "reference answers", count * sizeof(RtHit));
+    *reference = (RtReference){.scene = oracle->scene,
+                               .rays = rays,
+                               .count = count,
+                               .hits = rt_alloc(count, sizeof(RtHit)),
+                               .wrong = rt_alloc(count, sizeof(bool))};
     Job job = {.reference = reference, .accel = oracle, .threads = threads};
-    RtStatus status = run(&job, refer_chunk, error);
+    RtStatus status = reference->hits && reference->wrong
+                          ? run(&job, refer_chunk, error)
+                          : rt_fail_memory(error, "reference answers", count * sizeof(RtHit));
     if (status != RT_OK) rt_reference_clear(reference);
     return status;
 }
 
 void rt_reference_clear(RtReference *reference) {
     rt_free(reference->hits);
+    rt_free(reference->wrong);
     *reference = (RtReference){0};
 }
 
@@ -201,6 +210,27 @@ void rt_certain_undecided(const RtCertain *c, uint64_t rays, bool given, bool ab
                    : "Trace more rays, or move the scene nearer to the origin of coordinates");
 }
 
+/* ---- parts of a result ---- */
+
+static RtStatus make_parts(Job *job, RtArena *memory, RtError *error) {
+    job->parts = rt_arena_alloc(memory, chunks_of(job), sizeof(RtEquivalence));
+    return rt_arena_check(memory, "verdicts", error);
+}
+
+static RtEquivalence sum_of_parts(const Job *job) {
+    RtEquivalence sum = {0};
+    for (const RtEquivalence *part = job->parts; part < job->parts + chunks_of(job); part++) {
+        sum.rays += part->rays;
+        sum.occluded_wrong += part->occluded_wrong;
+        for (int v = 0; v < RT_VERDICT_COUNT; v++) sum.verdicts[v] += part->verdicts[v];
+        for (int s = 0; s < RT_SIDE_COUNT; s++) sum.sides[s] += part->sides[s];
+        for (int f = 0; f < RT_FAULT_COUNT; f++) sum.faults[f] += part->faults[f];
+        if (part->any_wrong && !sum.any_wrong) sum.first_wrong = part->first_wrong;
+        sum.any_wrong |= part->any_wrong;
+    }
+    return sum;
+}
+
 /* ---- checking ---- */
 
 /* Traces a chunk in all modes. */
@@ -264,9 +294,25 @@ void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *
     *count = end < left ? end : left;
 }
 
-static void keep_wrong_answer(RtEquivalence *part, const RtWrongAnswer *wrong) {
+static void keep_wrong_answer(const RtReference *reference, RtEquivalence *part, const RtWrongAnswer *wrong) {
     if (!part->any_wrong) part->first_wrong = *wrong;
     part->any_wrong = true;
+    reference->wrong[wrong->index] = true;
+}
+
+/* Of an answer to `nearest` that is marginal or wrong: which side is exactly right? */
+static RtStatus add_side(RtJudge judge, RtHit expected, RtHit got, RtEquivalence *part, RtError *error) {
+    RtSide side;
+    RT_TRY(rt_verdict_side(judge, expected, got, &side, error));
+    part->sides[side]++;
+    return RT_OK;
+}
+
+static RtStatus add_fault(RtJudge judge, RtHit got, RtEquivalence *part, RtError *error) {
+    RtFault fault;
+    RT_TRY(rt_verdict_fault(judge, got, &fault, error));
+    part->faults[fault]++;
+    return RT_OK;
 }
 
 /* Judges ray `i` of a chunk, and adds the verdict to the chunk's part. */
@@ -288,29 +334,22 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
                                .blocked = worker->answers.blocked[w][i]};
         RtVerdict verdict;
         RT_TRY(rt_answer_verdict(&worker->query, &wrong, &verdict, error));
-        if (verdict == RT_WRONG) keep_wrong_answer(part, &wrong);
+        if (verdict == RT_WRONG) keep_wrong_answer(job->reference, part, &wrong);
         if (verdict >= RT_MARGINAL) doubtful = &worker->answers.hits[w][i];
         if (verdict == RT_WRONG) faulty = doubtful;
         if (verdict > worst) worst = verdict;
         wrong.occluded = true;
         RT_TRY(rt_answer_verdict(&worker->query, &wrong, &verdict, error));
-        if (verdict == RT_WRONG) keep_wrong_answer(part, &wrong);
+        if (verdict == RT_WRONG) keep_wrong_answer(job->reference, part, &wrong);
         occluded_wrong |= verdict == RT_WRONG;
         if (verdict != RT_WRONG && verdict > worst) worst = verdict;
     }
     part->rays++;
     part->verdicts[worst]++;
-    if (doubtful && !job->accel->exact) {
-        RtSide side;
-        RT_TRY(rt_verdict_side(judge_of(job->accel, ray), expected, *doubtful, &side, error));
-        part->sides[side]++;
-    }
-    if (faulty && !job->accel->exact) {
-        RtFault fault;
-        RT_TRY(rt_verdict_fault(judge_of(job->accel, ray), *faulty, &fault, error));
-        part->faults[fault]++;
-    }
     part->occluded_wrong += occluded_wrong;
+    if (doubtful && !job->accel->exact)
+        RT_TRY(add_side(judge_of(job->accel, ray), expected, *doubtful, part, error));
+    if (faulty && !job->accel->exact) RT_TRY(add_fault(judge_of(job->accel, ray), *faulty, part, error));
     return RT_OK;
 }
 
@@ -350,24 +389,52 @@ static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *er
 
 RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int threads, RtEquivalence *out,
                               RtError *error) {
-    *out = (RtEquivalence){0};
-    RT_TRY(rt_accel_learn(accel, reference->rays, reference->hits, reference->count, error));
     Job job = {.reference = reference, .accel = accel, .threads = threads};
-    size_t chunks = (reference->count + CHUNK - 1) / CHUNK;
     RT_ARENA(memory);
-    job.parts = rt_arena_alloc(&memory, chunks, sizeof(RtEquivalence));
-    RT_TRY(rt_arena_check(&memory, "verdicts", error));
+    RT_TRY(rt_accel_learn(accel, reference->rays, reference->hits, reference->count, error));
+    RT_TRY(make_parts(&job, &memory, error));
     RT_TRY(run(&job, check_chunk, error));
-    for (size_t i = 0; i < chunks; i++) {
-        out->rays += job.parts[i].rays;
-        out->occluded_wrong += job.parts[i].occluded_wrong;
-        for (int v = 0; v < RT_VERDICT_COUNT; v++) out->verdicts[v] += job.parts[i].verdicts[v];
-        for (int s = 0; s < RT_SIDE_COUNT; s++) out->sides[s] += job.parts[i].sides[s];
-        for (int f = 0; f < RT_FAULT_COUNT; f++) out->faults[f] += job.parts[i].faults[f];
-        if (job.parts[i].any_wrong) keep_wrong_answer(out, &job.parts[i].first_wrong);
-    }
+    *out = sum_of_parts(&job);
     if (out->any_wrong || job.recounted.status == RT_OK) return RT_OK;
     return rt_fail(error, RT_BROKEN, "%s", job.recounted.message);
+}
+
+/* ---- recorded answers ---- */
+
+static RtStatus judge_chunk(void *context, size_t chunk, int thread, RtError *error) {
+    (void)thread;
+    const Job *job = context;
+    RtEquivalence *part = &job->parts[chunk];
+    for (size_t i = 0; i < chunk_count(job, chunk); i++) {
+        const size_t index = chunk * CHUNK + i;
+        const RtRay *ray = &job->reference->rays[index];
+        const RtHit expected = job->reference->hits[index];
+        const RtWrongAnswer answer = {
+            .index = index, .ray = *ray, .expected = expected, .got = job->recorded[index]};
+        const RtJudge judge = rt_judge(&job->reference->scene->geometry, ray, false);
+        RtHit got = answer.got;
+        RtVerdict verdict = RT_EQUAL;
+        RT_TRY(rt_verdict_name_object(judge, expected, &got, error));
+        if (memcmp(&expected, &got, sizeof got) != 0)
+            RT_TRY(rt_verdict_nearest(judge, expected, got, &verdict, error));
+        part->rays++;
+        part->verdicts[verdict]++;
+        if (verdict >= RT_MARGINAL) RT_TRY(add_side(judge, expected, got, part, error));
+        if (verdict < RT_WRONG) continue;
+        RT_TRY(add_fault(judge, got, part, error));
+        keep_wrong_answer(job->reference, part, &answer);
+    }
+    return RT_OK;
+}
+
+RtStatus rt_equivalence_judge(const RtReference *reference, const RtHit *hits, int threads,
+                              RtEquivalence *out, RtError *error) {
+    Job job = {.reference = reference, .recorded = hits};
+    RT_ARENA(memory);
+    RT_TRY(make_parts(&job, &memory, error));
+    RT_TRY(rt_parallel_for(chunks_of(&job), rt_thread_count(threads), judge_chunk, &job, error));
+    *out = sum_of_parts(&job);
+    return RT_OK;
 }
 
 /* ---- results as text ---- */
@@ -384,7 +451,7 @@ static json_t *vector_json(RtVec3 v) {
 }
 
 static json_t *hit_json(RtHit hit) {
-    json_t *object = hit.object == RT_NO_OBJECT ? json_null() : json_integer(hit.object);
+    json_t *object = hit.object >= RT_UNNAMED_OBJECT ? json_null() : json_integer(hit.object);
     return json_pack("{s:o, s:o}", "t", float_json(hit.t), "object", object);
 }
 
@@ -393,11 +460,13 @@ static json_t *wrong_answer_json(const RtWrongAnswer *w) {
     json_t *got = w->occluded ? json_boolean(w->blocked) : hit_json(w->got);
     char says[512];
     rt_wrong_answer_format(w, says, sizeof says);
-    return json_pack("{s:I, s:s, s:s, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "index", (json_int_t)w->index,
-                     "says", says, "query", w->occluded ? "occluded" : "nearest", "kernel",
-                     w->counted ? "counted" : "timed", "stream", (json_int_t)w->stream, "org",
-                     vector_json(w->ray.org), "dir", vector_json(w->ray.dir), "tmin", float_json(w->ray.tmin),
-                     "tmax", float_json(w->ray.tmax), "expected", expected, "got", got);
+    const char *kernel = w->stream == 0 ? NULL : w->counted ? "counted" : "timed";
+    return json_pack("{s:I, s:s, s:s, s:s?, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "index",
+                     (json_int_t)w->index, "says", says, "query", w->occluded ? "occluded" : "nearest",
+                     "kernel", kernel, "stream", kernel ? json_integer((json_int_t)w->stream) : json_null(),
+                     "org", vector_json(w->ray.org), "dir", vector_json(w->ray.dir), "tmin",
+                     float_json(w->ray.tmin), "tmax", float_json(w->ray.tmax), "expected", expected, "got",
+                     got);
 }
 
 json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, const char *accel,
@@ -429,18 +498,21 @@ json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, cons
 static void format_hit(RtHit hit, char *out, size_t size) {
     if (hit.object == RT_NO_OBJECT) {
         snprintf(out, size, "no hit");
+    } else if (hit.object == RT_UNNAMED_OBJECT) {
+        snprintf(out, size, "a hit at t = %.9g", (double)hit.t);
     } else {
         snprintf(out, size, "object %u at t = %.9g", hit.object, (double)hit.t);
     }
 }
 
 void rt_wrong_answer_format(const RtWrongAnswer *w, char *out, size_t size) {
-    char expected[64], got[64], ray[RT_RAY_TEXT];
+    char expected[64], got[64], ray[RT_RAY_TEXT], how[64] = "";
     format_hit(w->expected, expected, sizeof expected);
     format_hit(w->got, got, sizeof got);
     if (w->occluded) snprintf(got, sizeof got, "%s", w->blocked ? "blocked" : "not blocked");
     rt_ray_format(&w->ray, ray, sizeof ray);
-    snprintf(out, size, "ray %zu, %s, %s kernel, streams of %zu: %s: expected %s, got %s", w->index,
-             w->occluded ? "occluded" : "nearest", w->counted ? "counted" : "timed", w->stream, ray, expected,
-             got);
+    if (w->stream > 0)
+        snprintf(how, sizeof how, ", %s, %s kernel, streams of %zu", w->occluded ? "occluded" : "nearest",
+                 w->counted ? "counted" : "timed", w->stream);
+    snprintf(out, size, "ray %zu%s: %s: expected %s, got %s", w->index, how, ray, expected, got);
 }

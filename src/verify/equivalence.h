@@ -4,7 +4,8 @@
  * Each ray is traced four times, by the timed and the counted kernels of `nearest` and `occluded`, in streams
  * of 1, 7, 64 or a whole chunk of rays in turn. An exact accelerator is queried both in short and in long
  * streams, and must return the t bits and the id of the reference in each. Other accelerators get verdicts
- * (verify/verdict.h), the most severe of the four. Results are the same on any number of threads. */
+ * (verify/verdict.h), the most severe of the four. Recorded answers of any other program are judged like
+ * theirs. Results are the same on any number of threads. */
 #ifndef RT_VERIFY_EQUIVALENCE_H
 #define RT_VERIFY_EQUIVALENCE_H
 
@@ -18,6 +19,7 @@ typedef struct RtReference {
     const RtRay *rays;    /* [count] borrowed; they must not move */
     size_t count;
     RtHit *hits; /* [count] owned */
+    bool *wrong; /* [count] owned: rays that some check has found a wrong answer to */
 } RtReference;
 
 /* Computes the answers to rays[0..count), all valid, with `oracle`: usually brute, or an accelerator
@@ -30,7 +32,7 @@ void rt_reference_clear(RtReference *reference);
 typedef struct RtWrongAnswer {
     size_t index; /* of the ray in the reference */
     bool occluded, counted;
-    size_t stream; /* length of its streams */
+    size_t stream; /* length of its streams; 0: a recorded answer */
     RtRay ray;
     RtHit expected;
     RtHit got;    /* of `nearest` */
@@ -52,6 +54,11 @@ typedef struct RtEquivalence {
  * accelerator that learns receives the reference's hits first. */
 RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int threads, RtEquivalence *out,
                               RtError *error);
+
+/* Judges recorded answers to `nearest`, hits[0..reference->count), as those of an accelerator that is not
+ * exact. Object RT_UNNAMED_OBJECT is a hit of which only t is known. Nothing is said of `occluded`. */
+RtStatus rt_equivalence_judge(const RtReference *reference, const RtHit *hits, int threads,
+                              RtEquivalence *out, RtError *error);
 
 /* Rays of a reference whose answer is certain (verify/verdict.h), for accelerators with absolute coordinates
  * or for others. If there are too many objects for all rays, every kth one is examined. */
@@ -83,7 +90,8 @@ void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *
                              size_t *count);
 
 /* The row of `verify --json`, without the number of certain rays: a new reference, NULL if memory is short.
- * Floats are strings that read back to the same bits ("inf" included). */
+ * Floats are strings that read back to the same bits ("inf" included). A recorded first_wrong has no kernel
+ * and no stream. */
 json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, const char *accel,
                             const char *against);
 

@@ -92,6 +92,42 @@ RtStatus rt_failure_of(const RtReference *reference, const RtWrongAnswer *wrong,
     return rt_failure_ask(failure, reference->scene, answer, error);
 }
 
+/* ---- recorded answers ---- */
+
+static RtStatus find_near(const RtScene *scene, const RtWrongAnswer *wrong, uint32_t *ids, uint32_t *count,
+                          RtError *error) {
+    const RtJudge judge = rt_judge(&scene->geometry, &wrong->ray, false);
+    for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
+        RtMargin margin;
+        RT_TRY(rt_margin_of(&judge.margin, judge.geometry, id, NAN, &margin, error));
+        if (margin.possible || id == wrong->expected.object || id == wrong->got.object) ids[(*count)++] = id;
+    }
+    return RT_OK;
+}
+
+RtStatus rt_near_save(const RtScene *scene, const RtWrongAnswer *wrong, const char *path, uint32_t *count,
+                      RtError *error) {
+    RT_ARENA(memory);
+    RT_OWNED(RtScene, part, rt_scene_clear);
+    RtOutput output;
+    char says[512];
+    uint32_t *ids = rt_arena_alloc(&memory, scene->geometry.object_count, sizeof(uint32_t));
+    *count = 0;
+    RT_TRY(rt_arena_check(&memory, "ids of objects", error));
+    RT_TRY(find_near(scene, wrong, ids, count, error));
+    if (*count == 0) return RT_OK;
+    RT_TRY(rt_scene_subset(scene, ids, *count, &part, error));
+    RT_TRY(rt_output_open(&output, path, error));
+    rt_wrong_answer_format(wrong, says, sizeof says);
+    fprintf(output.file, "# %s\n# Objects near the ray:", says);
+    for (uint32_t i = 0; i < *count; i++) fprintf(output.file, " %" PRIu32, ids[i]);
+    fputs("; here they are 0, 1, ...\n", output.file);
+    const RtStatus status = rt_yaml_save(&part, output.file, error);
+    if (status == RT_OK) return rt_output_commit(&output, error);
+    rt_output_discard(&output);
+    return status;
+}
+
 /* ---- shrinking ---- */
 
 /* The fixed cost of a try, in objects. */

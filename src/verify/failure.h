@@ -41,6 +41,14 @@ RtStatus rt_failure_ask(const RtFailure *failure, const RtScene *scene, RtAnswer
 RtStatus rt_failure_of(const RtReference *reference, const RtWrongAnswer *wrong, const char *spec,
                        int threads, RtFailure *failure, RtAnswer *answer, RtError *error);
 
+/* ---- recorded answers ---- */
+
+/* Nothing can be repeated for a wrong answer of rt_equivalence_judge. Writes the objects near its ray, those
+ * that rounding lets it hit and both of the answers, to a scene file, a .yaml, whose first lines say what it
+ * is; *count: their number. 0: there is none, and no file. */
+RtStatus rt_near_save(const RtScene *scene, const RtWrongAnswer *wrong, const char *path, uint32_t *count,
+                      RtError *error);
+
 /* ---- shrinking ---- */
 
 typedef void RtShrinkTried(void *context, uint32_t left, uint32_t tries);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/verdict.h"
 
+#include "accel/accel.h"
+
 const char *rt_verdict_name(RtVerdict verdict) {
     static const char *const names[RT_VERDICT_COUNT] = {"equal", "tie", "marginal", "wrong"};
     return names[verdict];
@@ -98,6 +100,23 @@ RtStatus rt_verdict_side(RtJudge judge, RtHit expected, RtHit answer, RtSide *si
     double tolerance = fmax(tolerance_of(&judge, expected), tolerance_of(&judge, answer));
     *side = rt_referee_judge(judge.geometry, judge.ray, expected, answer, tolerance).side;
     return *side == RT_SIDE_UNDECIDED ? lack_memory(error) : RT_OK;
+}
+
+RtStatus rt_verdict_name_object(RtJudge judge, RtHit expected, RtHit *answer, RtError *error) {
+    const uint32_t count = judge.geometry->object_count;
+    if (answer->object != RT_UNNAMED_OBJECT) return RT_OK;
+    if (expected.object < count) answer->object = expected.object;
+    for (uint32_t i = 0; i <= count; i++) {
+        const uint32_t id = i == 0 ? expected.object : i - 1;
+        RtMargin own;
+        if (id >= count) continue;
+        RT_TRY(rt_margin_of(&judge.margin, judge.geometry, id, (double)answer->t * judge.margin.line.length,
+                            &own, error));
+        if (!own.holds) continue;
+        answer->object = id;
+        return RT_OK;
+    }
+    return RT_OK;
 }
 
 RtStatus rt_verdict_nearest(RtJudge judge, RtHit expected, RtHit answer, RtVerdict *verdict, RtError *error) {

@@ -61,6 +61,11 @@ const char *rt_fault_name(RtFault fault);
 
 /* All of these fail with RT_NO_MEMORY if exact arithmetic on a CSG tree lacks memory, without a result. */
 
+/* Gives an answer with object RT_UNNAMED_OBJECT, a t alone, the object that excuses it: expected's if that
+ * may be hit at this t, otherwise the first that may; otherwise expected's all the same, if there is one. The
+ * verdict on it is the same for all that excuse it. Other answers do not change. */
+RtStatus rt_verdict_name_object(RtJudge judge, RtHit expected, RtHit *answer, RtError *error);
+
 /* Judges the nearest hit `answer`; `expected` is brute's. */
 RtStatus rt_verdict_nearest(RtJudge judge, RtHit expected, RtHit answer, RtVerdict *verdict, RtError *error);
 

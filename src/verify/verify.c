@@ -7,10 +7,13 @@
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "measure/machine.h"
+#include "measure/measure.h"
 #include "scenes/open.h"
 #include "verify/verify_table.h"
 
+#include <inttypes.h>
 #include <string.h>
+#include <xxhash.h>
 
 #define FAILURES "verify-failures" /* default folder */
 
@@ -23,6 +26,7 @@ typedef struct Run {
     RtVerifyProgress progress;
     RtLock lock;
     RtScene *scenes; /* [scene_count], each open until its turn is over */
+    RtHit *recorded; /* [verify->rays.count] hits of the recorded spec, or NULL */
     json_t *header;  /* must be equal when a run is resumed */
     json_t *known;   /* the journal, or NULL */
     size_t next_known;
@@ -53,6 +57,16 @@ static RtStatus open_scenes(Run *run, RtError *error) {
     return RT_OK;
 }
 
+static RtStatus load_recorded(Run *run, RtError *error) {
+    const RtVerify *v = run->verify;
+    for (uint32_t i = 0; i < v->spec_count; i++) {
+        if (!v->specs[i].recorded) continue;
+        return rt_hits_load(v->specs[i].spec, v->rays.count, run->scenes[0].geometry.object_count,
+                            &run->recorded, error);
+    }
+    return RT_OK;
+}
+
 static json_t *header_json(const Run *run) {
     const RtVerify *v = run->verify;
     json_t *scenes = json_array(), *fingerprints = json_array(), *specs = json_array();
@@ -64,10 +78,12 @@ static json_t *header_json(const Run *run) {
         json_array_append_new(specs, json_string(v->specs[i].spec));
     }
     json_t *given = v->rays.given ? rt_json_hex(v->rays.given->fingerprint) : json_null();
-    return json_pack("{s:i, s:s, s:o, s:o, s:o, s:I, s:o, s:I, s:I}", "format", RT_FILE_FORMAT, "build",
+    json_t *hits =
+        run->recorded ? rt_json_hex(XXH3_64bits(run->recorded, v->rays.count * sizeof(RtHit))) : json_null();
+    return json_pack("{s:i, s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:I, s:I}", "format", RT_FILE_FORMAT, "build",
                      rt_build_identity(), "scenes", scenes, "fingerprints", fingerprints, "accels", specs,
-                     "rays", (json_int_t)v->rays.count, "rays_hash", given, "seed", (json_int_t)v->rays.seed,
-                     "shrink", (json_int_t)v->shrink);
+                     "rays", (json_int_t)v->rays.count, "rays_hash", given, "hits_hash", hits, "seed",
+                     (json_int_t)v->rays.seed, "shrink", (json_int_t)v->shrink);
 }
 
 /* Records what was verified, and with what, in the folder's manifest.json. */
@@ -116,6 +132,7 @@ static RtStatus begin(Run *run, RtError *error) {
     bool resumed = false;
     RT_TRY(take_folder(run, &resumed, error));
     RT_TRY(open_scenes(run, error));
+    RT_TRY(load_recorded(run, error));
     run->header = header_json(run);
     if (!run->header) return rt_fail_memory(error, "what is verified", 0);
     if (!run->verify->folder) return RT_OK;
@@ -156,16 +173,23 @@ static void on_tried(void *context, uint32_t left, uint32_t tries) {
     doing(context, what);
 }
 
-/* Writes FOLDER/NUMBER-SCENE-SPEC.json, and its name to path[0..RT_MAX_PATH). */
-static RtStatus save_replay(const Run *run, const RtReplayRecord *record, char *path, RtError *error) {
+/* Makes the folder for FOLDER/NUMBER-SCENE-SPEC.ENDING; writes this name to path[0..RT_MAX_PATH). */
+static RtStatus name_failure(const Run *run, const char *scene, const char *spec, const char *ending,
+                             char *path, RtError *error) {
     const char *folder = run->verify->folder ? run->verify->folder : FAILURES;
     char text[160], name[sizeof text];
-    snprintf(text, sizeof text, "%04zu-%.60s-%.50s.json", json_array_size(run->rows) + 1, record->scene_spec,
-             record->failure->spec);
+    snprintf(text, sizeof text, "%04zu-%.60s-%.50s.%s", json_array_size(run->rows) + 1, scene, spec, ending);
     rt_file_name(text, name, sizeof name);
     RT_TRY(rt_directory_create(folder, error));
-    RT_TRY(rt_path_join(folder, name, path, error));
-    return rt_replay_save(path, record, error);
+    return rt_path_join(folder, name, path, error);
+}
+
+/* `path`: NULL if there is no file; `left`: the objects in it. */
+static void add_file(json_t *row, const char *path, json_t *left, bool shrunk) {
+    json_t *first = json_object_get(row, "first_wrong");
+    json_object_set_new(first, "replay", path ? json_string(path) : json_null());
+    json_object_set_new(first, "objects_left", left);
+    json_object_set_new(first, "shrunk", json_boolean(shrunk));
 }
 
 /* The budget for shrinking a failure: by default half that of the one before, so that all take some seconds.
@@ -201,32 +225,63 @@ static RtStatus keep_failure(Run *run, const RtVerifyScene *scene, const RtVerif
         RT_TRY(rt_shrink(&scene->scene, &failure, &answer, budget, on_tried, run, &shrunk, error));
         record.shrunk = &shrunk;
     }
-    const bool saved = save_replay(run, &record, path, &run->unsaved) == RT_OK;
-    json_t *first = json_object_get(row, "first_wrong");
-    json_object_set_new(first, "replay", saved ? json_string(path) : json_null());
-    json_object_set_new(first, "objects_left", answer.wrong ? json_integer(shrunk.count) : json_null());
-    json_object_set_new(first, "shrunk", json_boolean(record.shrunk != NULL));
+    const bool saved = name_failure(run, scene->name, spec->spec, "json", path, &run->unsaved) == RT_OK &&
+                       rt_replay_save(path, &record, &run->unsaved) == RT_OK;
+    add_file(row, saved ? path : NULL, answer.wrong ? json_integer(shrunk.count) : json_null(),
+             record.shrunk != NULL);
     rt_free(shrunk.ids);
     return RT_OK;
 }
 
+/* The same for a recorded answer: the objects near its ray. */
+static void keep_near(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec,
+                      const RtWrongAnswer *wrong, json_t *row) {
+    char path[RT_MAX_PATH];
+    uint32_t count = 0;
+    const bool saved = name_failure(run, scene->name, spec->spec, "yaml", path, &run->unsaved) == RT_OK &&
+                       rt_near_save(&scene->scene, wrong, path, &count, &run->unsaved) == RT_OK;
+    add_file(row, saved && count > 0 ? path : NULL, json_integer(count), true);
+}
+
 /* ---- a row ---- */
 
-/* Adds the number of certain rays to the row of an accelerator that is not exact. With too few, `problem`
- * says so, unless it is already known. */
-static RtStatus add_certain(Run *run, const RtVerifyScene *scene, const RtAccel *accel, json_t *row,
-                            char *problem, size_t size, RtError *error) {
+/* Adds the number of certain rays to the row of answers that are not exact. With too few, `problem` says so,
+ * unless it is already known. */
+static RtStatus add_certain(Run *run, const RtVerifyScene *scene, bool absolute, json_t *row, char *problem,
+                            size_t size, RtError *error) {
     const RtVerifyRays *rays = &run->verify->rays;
-    RtCertain *certain = &run->certain[accel->absolute];
-    if (accel->exact) return RT_OK;
+    RtCertain *certain = &run->certain[absolute];
     if (certain->rays == UINT64_MAX)
-        RT_TRY(rt_reference_certain(&scene->reference, accel->absolute, rays->threads, certain, error));
+        RT_TRY(rt_reference_certain(&scene->reference, absolute, rays->threads, certain, error));
     json_object_set_new(row, "certain", json_integer((json_int_t)certain->certain));
     json_object_set_new(row, "must_hit", json_integer((json_int_t)certain->must_hit));
     json_object_set_new(row, "certain_of", json_integer((json_int_t)certain->rays));
     if (!*problem && !rt_certain_suffices(certain, rays->count, rays->given))
-        rt_certain_undecided(certain, rays->count, rays->given, accel->absolute, problem, size);
+        rt_certain_undecided(certain, rays->count, rays->given, absolute, problem, size);
     return RT_OK;
+}
+
+/* The row of a result; accel NULL: of recorded answers. problem[0..sizeof error->message) is what is wrong
+ * beside answers, or "". */
+static RtStatus add_result(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec,
+                           const RtAccel *accel, const RtEquivalence *result, char *problem, RtError *error) {
+    const bool exact = accel && accel->exact;
+    const RtWrongAnswer *wrong = &result->first_wrong;
+    RtStatus status = RT_OK;
+    json_t *row = rt_equivalence_json(result, scene->name, spec->spec, rt_accel_truth());
+    json_object_set_new(row, "exact", json_boolean(exact));
+    json_object_set_new(row, "refused", json_null());
+    if (!accel) json_object_set_new(row, "occluded_wrong", json_null()); /* nothing is known */
+    if (!exact)
+        status =
+            add_certain(run, scene, accel && accel->absolute, row, problem, sizeof error->message, error);
+    json_object_set_new(row, "problem", *problem ? json_string(problem) : json_null());
+    if (status == RT_OK && result->any_wrong && !accel) keep_near(run, scene, spec, wrong, row);
+    if (status == RT_OK && result->any_wrong && accel)
+        status = keep_failure(run, scene, spec, wrong, row, error);
+    if (status == RT_OK) return add_row(run, row, error);
+    json_decref(row);
+    return status;
 }
 
 /* A broken structure is a problem, like a wrong answer; rays are traced through it all the same. */
@@ -241,16 +296,15 @@ static RtStatus check(Run *run, const RtVerifyScene *scene, RtAccel *accel, cons
         RT_TRY(status);
     }
     RT_TRY(rt_equivalence_check(&scene->reference, accel, run->verify->rays.threads, &result, error));
-    json_t *row = rt_equivalence_json(&result, scene->name, spec->spec, rt_accel_truth());
-    json_object_set_new(row, "exact", json_boolean(accel->exact));
-    json_object_set_new(row, "refused", json_null());
-    status = add_certain(run, scene, accel, row, problem, sizeof problem, error);
-    json_object_set_new(row, "problem", *problem ? json_string(problem) : json_null());
-    if (status == RT_OK && result.any_wrong)
-        status = keep_failure(run, scene, spec, &result.first_wrong, row, error);
-    if (status == RT_OK) return add_row(run, row, error);
-    json_decref(row);
-    return status;
+    return add_result(run, scene, spec, accel, &result, problem, error);
+}
+
+static RtStatus judge_recorded(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec,
+                               RtError *error) {
+    char problem[sizeof error->message] = "";
+    RtEquivalence result;
+    RT_TRY(rt_equivalence_judge(&scene->reference, run->recorded, run->verify->rays.threads, &result, error));
+    return add_result(run, scene, spec, NULL, &result, problem, error);
 }
 
 /* A plugin's accelerator broke before it answered all rays, or an accelerator refuses the scene: a row
@@ -277,6 +331,7 @@ static void skip_inexact(Run *run, const char *spec) {
 static RtStatus verify_spec(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec, RtError *error) {
     RtAccel *accel = NULL;
     doing(run, spec->spec);
+    if (spec->recorded) return judge_recorded(run, scene, spec, error);
     rt_memory_limit(run->verify->memory);
     RtStatus status = rt_memory_unlimit(
         rt_accel_open_on(spec->spec, &scene->scene, run->verify->rays.threads, &accel, error), error);
@@ -312,6 +367,22 @@ static RtStatus prepare_scene(Run *run, uint32_t i, RtVerifyScene *scene, RtErro
                              error);
 }
 
+static RtStatus save_wrong_rays(const Run *run, const RtReference *reference, RtError *error) {
+    const char *path = run->verify->wrong_rays;
+    char notice[RT_MAX_PATH + 64];
+    RT_OWNED(RtRaySet, set, rt_rayset_clear);
+    RT_TRY(rt_rayset_init(&set, RT_RAY_RANDOM, reference->count, error));
+    set.count = 0;
+    for (size_t i = 0; i < reference->count; i++) {
+        if (reference->wrong[i]) set.rays[set.count++] = reference->rays[i];
+    }
+    RT_TRY(rt_rays_save(&set, path, error));
+    snprintf(notice, sizeof notice, "wrote %s: %" PRIu64 " ray%s with a wrong answer", path, set.count,
+             rt_plural(set.count));
+    run->observer->notice(run->observer->context, notice);
+    return RT_OK;
+}
+
 static RtStatus verify_scene(Run *run, uint32_t index, RtError *error) {
     const RtVerify *v = run->verify;
     const char *name = v->scenes[index];
@@ -329,6 +400,7 @@ static RtStatus verify_scene(Run *run, uint32_t index, RtError *error) {
         if (status == RT_OK) status = verify_spec(run, &scene, &v->specs[i], error);
         run->progress.done += v->rays.count;
     }
+    if (status == RT_OK && v->wrong_rays) status = save_wrong_rays(run, &scene.reference, error);
     rt_verify_scene_clear(&scene);
     rt_scene_clear(&run->scenes[index]);
     return status;
@@ -350,6 +422,7 @@ RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer,
     rt_json_lines_close(&run.journal);
     for (uint32_t i = 0; run.scenes && i < verify->scene_count; i++) rt_scene_clear(&run.scenes[i]);
     rt_free(run.scenes);
+    rt_free(run.recorded);
     rt_lock_release(&run.lock);
     json_decref(run.known);
     json_decref(run.header);

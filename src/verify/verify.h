@@ -2,10 +2,10 @@
 /* Verification: does every accelerator answer every ray of every scene like brute?
  *
  * A row is a scene and a spec, with the numbers of equal, tied, marginal and wrong answers; its first wrong
- * answer is kept in a replay file (verify/failure.h). The first failure of a spec is shrunk to a few objects,
- * up to eight failures in all, each with half the budget of the one before; if more than one is asked for
- * (RtVerify.shrink), each has the whole budget. Rows are appended to a journal, from which an interrupted run
- * resumes, and finally to the tables of verify_table.h. */
+ * answer is kept in a replay file, or that of another program in a small scene (verify/failure.h). The first
+ * failure of a spec is shrunk to a few objects, up to eight failures in all, each with half the budget of the
+ * one before; if more than one is asked for (RtVerify.shrink), each has the whole budget. Rows are appended
+ * to a journal, from which an interrupted run resumes, and finally to the tables of verify_table.h. */
 #ifndef RT_VERIFY_VERIFY_H
 #define RT_VERIFY_VERIFY_H
 
@@ -13,11 +13,13 @@
 #include "verify/failure.h"
 #include "verify/verify_rays.h"
 
-/* One accelerator to verify. Unless it was requested by name, it may be missing on this machine or reject
- * a scene: then it has no row there. With its own arithmetic it has rows only if `judged`. */
+/* One accelerator to verify, or the answers of another program. Unless it was requested by name, it may be
+ * missing on this machine or reject a scene: then it has no row there. With its own arithmetic it has rows
+ * only if `judged`. */
 typedef struct RtVerifySpec {
     char spec[RT_MAX_SPEC_CHARS];
     bool named, judged;
+    bool recorded; /* `spec` is a file of hits instead (rt_hits_load): one at most, of one scene */
 } RtVerifySpec;
 
 #define RT_SHRINK_ALL UINT32_MAX
@@ -33,6 +35,9 @@ typedef struct RtVerify {
     /* For journal, tables, manifest and replay files; NULL: only replay files, in verify-failures. */
     const char *folder;
     RtStart start; /* what to do with existing results */
+    /* NULL, or a file for the rays with a wrong answer of any accelerator (rt_rays_save), maybe none; for one
+     * scene, and no earlier run. */
+    const char *wrong_rays;
 } RtVerify;
 
 typedef struct RtVerifyProgress {

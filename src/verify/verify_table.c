@@ -47,6 +47,7 @@ static void add(RtVerifySum *sum, const json_t *row) {
     if (!json_is_true(json_object_get(row, "exact"))) sum->judged += number(row, "rays");
     if (strcmp(rt_json_text(row, "accel", ""), rt_json_text(row, "against", "")) == 0)
         sum->itself += number(row, "rays");
+    if (json_is_null(json_object_get(row, "occluded_wrong"))) sum->recorded += number(row, "rays");
     sum->certain += number(row, "certain");
     sum->must_hit += number(row, "must_hit");
     sum->certain_of += number(row, "certain_of");
@@ -114,14 +115,14 @@ static const void *first_wrong_of(const void *row) {
     { name, name, "", meaning, get_member, RT_FORM_##form, 0 }
 static const RtTableColumn members[] = {
     MEMBER("scene", text, "the scene"),
-    MEMBER("accel", text, "the accelerator's spec"),
+    MEMBER("accel", text, "the accelerator's spec, or the file of hits"),
     MEMBER("against", text, "the reference: brute"),
     MEMBER("rays", integer, "rays traced"),
     MEMBER("equal", integer, "answers to nearest that equal brute's"),
     MEMBER("tie", integer, "answers with another object that is hit at the same point"),
     MEMBER("marginal", integer, "other answers that rounding explains"),
     MEMBER("wrong", integer, "all other answers"),
-    MEMBER("occluded_wrong", integer, "rays whose answer to occluded is wrong"),
+    MEMBER("occluded_wrong", integer, "rays whose answer to occluded is wrong; empty: a file of hits"),
     MEMBER("problem", text, "a broken structure, or `undecided` and why; empty: none"),
     MEMBER("refused", text,
            "why the accelerator refuses the scene (memory, a limit of its own); the row then has no rays"),
@@ -145,7 +146,10 @@ static const RtTableColumn sides[] = {RT_SIDES(SIDE)};
 static const RtTableColumn faults[] = {RT_FAULTS(FAULT)};
 
 static const RtTableColumn first_wrong[] = {
-    MEMBER("replay", text, "replay file of the first wrong answer; empty: it was not kept"),
+    MEMBER(
+        "replay", text,
+        "replay file of the first wrong answer, or of a file of hits a scene with the objects near its ray; "
+        "empty: it was not kept"),
     MEMBER("objects_left", integer,
            "objects left in the reduced scene; empty: traced again, the answer is right"),
     MEMBER("shrunk", flag,
@@ -153,8 +157,8 @@ static const RtTableColumn first_wrong[] = {
     MEMBER("index", integer, "number of the ray"),
     MEMBER("says", text, "the query, the expected and the actual answer, in one line"),
     MEMBER("query", text, "nearest or occluded"),
-    MEMBER("kernel", text, "timed or counted"),
-    MEMBER("stream", integer, "rays per query"),
+    MEMBER("kernel", text, "timed or counted; null: a file of hits"),
+    MEMBER("stream", integer, "rays per query; null: a file of hits"),
     MEMBER("org", json, "origin of the ray: three numbers as text, which read back to the same bits"),
     MEMBER("dir", json, "its direction, in the same form"),
     MEMBER("tmin", text, "its tmin, as text"),
@@ -258,6 +262,9 @@ static void write_introduction(const RtVerifySum *total, FILE *out) {
     fprintf(out, "%" PRIu64 " answer%s to `nearest` %s wrong, %" PRIu64 " to `occluded`. ",
             total->verdicts[RT_WRONG], rt_plural(total->verdicts[RT_WRONG]),
             total->verdicts[RT_WRONG] == 1 ? "is" : "are", total->occluded_wrong);
+    if (total->recorded > 0)
+        fprintf(out, "%" PRIu64 " comparison%s %s with hits of a file, which answer `nearest` alone.\n",
+                total->recorded, rt_plural(total->recorded), total->recorded == 1 ? "is" : "are");
     fprintf(out, "%u row%s, %u of which fail, %s in [verify.csv](verify.csv).\n", total->rows,
             rt_plural(total->rows), total->failed, total->rows == 1 ? "is" : "are");
     fputs(

@@ -25,6 +25,7 @@ typedef struct RtVerifySum {
     uint64_t pairs;
     uint64_t judged;                        /* pairs compared by verdicts; the others bit for bit */
     uint64_t itself;                        /* pairs of brute with itself */
+    uint64_t recorded;                      /* pairs with hits of a file, which do not answer `occluded` */
     uint64_t certain, must_hit, certain_of; /* rays of judged rows: certain among those examined */
     uint64_t verdicts[RT_VERDICT_COUNT];    /* of nearest; sum to `pairs` */
     uint64_t occluded_wrong;                /* pairs with a wrong answer to occluded */

@@ -123,6 +123,42 @@ RT_TEST(occlusion_rays_say_whether_anything_lies_on_them) {
     assert_int_equal(hit, json_integer_value(json_object_get(counts, "hits")));
 }
 
+/* Lines of a text, without the first. */
+static uint64_t rows_of_text(const char *path) {
+    uint64_t rows = 0;
+    for (const char *at = text_of(path); (at = strchr(at, '\n')); at++) rows++;
+    return rows - 1;
+}
+
+RT_TEST(rays_hits_and_counts_as_text_are_those_of_arrays) {
+    const char *const bench =
+        "bench balls:size=2 --accel grid --rays %s --count-only --rays-from '%s.%s' --hits "
+        "'%s.h.%s' --counts '%s.c.%s'";
+    for (int text = 0; text < 2; text++) {
+        const char *ending = text ? "csv" : "npy";
+        assert_int_equal(run("rays balls:size=2 %s --rays diffuse -o '%s.%s'", SMALL, OUT, ending), 0);
+        assert_int_equal(run(bench, "occlusion", OUT, ending, OUT, ending, OUT, ending), 0);
+        if (text) assert_int_equal(strncmp(text_of(OUT ".h.csv"), "blocked\n0\n", 10), 0);
+        assert_int_equal(run(bench, "nearest", OUT, ending, OUT, ending, OUT, ending), 0);
+    }
+    OWNED_BYTES counts = bytes_of(OUT ".c.npy");
+    assert_non_null(strstr(text_of(OUT ".c.csv"), "rays,hits,object_tests,"));
+    assert_int_equal(rows_of_text(OUT ".c.csv"),
+                     (size_t)(counts.data + counts.size - numbers_of(&counts)) / sizeof(RtTally));
+    for (int text = 0; text < 2; text++)
+        assert_said(run("verify balls:size=2 --rays-from '%s.csv' --hits-from '%s.h.%s'", OUT, OUT,
+                        text ? "csv" : "npy"),
+                    0, OUT ".out", "by verdicts, nothing wrong");
+    unlink(OUT ".of-bvh.csv");
+    assert_int_equal(
+        run("bench balls:size=2 --accel grid --accel bvh --rays nearest --count-only --rays-from "
+            "'%s.csv' --hits '%s.of.csv'",
+            OUT, OUT),
+        0);
+    assert_non_null(strstr(text_of(OUT ".out"), ".of-*.csv\n"));
+    assert_int_equal(rows_of_text(OUT ".of-bvh.csv"), rows_of_text(OUT ".c.csv"));
+}
+
 RT_TEST(verify_asks_the_rays_of_a_file_and_is_gone_on_with_only_by_the_same) {
     assert_int_equal(run("rays balls:size=1 %s --rays random -o '%s'", SMALL, RAYS), 0);
     assert_said(

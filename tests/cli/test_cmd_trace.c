@@ -105,6 +105,65 @@ RT_TEST(many_object_tests_that_miss_are_one_row_unless_each_is_asked_for) {
     assert_true(says(OUT ".txt", "object 91, "));
 }
 
+/* ---- a ray without a pixel ---- */
+
+/* The numbers of a vector of a path, with a comma behind each. */
+static void append_vector(char *text, const json_t *path, const char *name) {
+    for (size_t a = 0; a < 3; a++)
+        sprintf(text + strlen(text), "%.9g,",
+                json_number_value(json_array_get(json_object_get(path, name), a)));
+}
+
+RT_TEST(a_given_ray_costs_and_hits_what_the_ray_of_its_pixel_does) {
+    char arguments[512] = "balls:size=2 --ray ";
+    json_auto_t *path = path_of("balls:size=2 --size 64x64 --pixel 32,30");
+    append_vector(arguments, path, "org");
+    append_vector(arguments, path, "dir");
+    sprintf(arguments + strlen(arguments), "%.9g,%.9g", json_number_value(json_object_get(path, "tmin")),
+            HUGE_VAL);
+    json_auto_t *given = path_of(arguments);
+    static const char *const same[] = {"org", "dir", "tmin", "tmax", "rows", "counts", "object", "t"};
+    for (size_t i = 0; i < sizeof same / sizeof same[0]; i++)
+        assert_true(json_equal(json_object_get(path, same[i]), json_object_get(given, same[i])));
+    assert_true(json_is_null(json_object_get(given, "pixel")));
+}
+
+RT_TEST(a_row_of_a_file_of_rays_is_traced) {
+    const char *file = RT_BINARY_DIR "/test_cmd_trace.npy";
+    char arguments[512];
+    assert_int_equal(
+        raytally_to("> /dev/null", "rays balls:size=2 --rays diffuse --size 40x40 -o '%s'", file), 0);
+    for (int row = 0; row < 2; row++) {
+        snprintf(arguments, sizeof arguments, "balls:size=2 --ray '%s:%d' --accel grid", file, row);
+        json_auto_t *path = path_of(arguments);
+        const json_t *org = json_object_get(path, "org");
+        float rays[2][8];
+        FILE *in = fopen(file, "rb");
+        assert_non_null(in);
+        fseek(in, 128, SEEK_SET);
+        assert_int_equal(fread(rays, sizeof rays, 1, in), 1);
+        fclose(in);
+        for (size_t a = 0; a < 3; a++)
+            assert_true((float)json_number_value(json_array_get(org, a)) == rays[row][a]);
+    }
+    assert_said(trace(arguments), 0, OUT ".txt", "test_cmd_trace.npy:1\nfrom (");
+    snprintf(arguments, sizeof arguments, "balls:size=2 --ray '%s:99999999'", file);
+    assert_said(trace(arguments), 2, OUT ".err", "has no row '99999999': choose 0..");
+}
+
+/* Here the ray ends in front of the floor, here not. */
+RT_TEST(a_given_ray_is_asked_for_any_hit_or_followed_with_its_tree) {
+    assert_said(trace("balls:size=2 --ray 0,0,9,0,0,-1,0,1 --rays shadow"), 0, OUT ".txt",
+                "nothing blocks it");
+    assert_said(trace("balls:size=2 --ray 0,0,9,0,0,-1 --rays shadow --accel item+light+cache+bvh"), 0,
+                OUT ".txt", "it is blocked by object");
+    assert_said(trace("balls:size=2 --ray '0 0 9  0, 0, -1' --rays shadow"), 0, OUT ".txt",
+                "it is blocked by");
+    assert_said(trace("balls:size=2 --ray 0,0,9,0,0,-1 --depth 2"), 0, OUT ".txt",
+                "the ray tree, 2 levels, of ray 0,0,9,0,0,-1");
+    assert_true(says(OUT ".txt", "shadow to light 0"));
+}
+
 /* ---- ray trees ---- */
 
 #define LECTURE "'" RT_SOURCE_DIR "/scenes/lecture.yaml' --size 80x60"
@@ -173,6 +232,18 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
     } cases[] = {
         {"", "a SCENE is missing"},
         {"balls", "--pixel X,Y"},
+        {"balls --pixel 1,1 --ray 1,2,3,4,5,6", "one of --pixel X,Y and --ray"},
+        {"balls --ray 1,2,3", "'1,2,3' is no ray: expected OX,OY,OZ,DX,DY,DZ or"},
+        {"balls --ray 1,2,3,4,5,6,7", "is no ray"},
+        {"balls --ray 1,2,3,4,5,6,7,8,9", "is no ray"},
+        {"balls --ray 1,2,3,4,5,6,", "is no ray"},
+        {"balls --ray 1,2,3,4,5,x", "is no ray"},
+        {"balls --ray 1,2,3,4,5x6", "is no ray"},
+        {"balls --ray 1,2,3,0,0,0", "not a valid ray: its direction is zero"},
+        {"balls --ray 1,2,3,4,5,6,7,6", "not a valid ray: its tmax is less than its tmin"},
+        {"balls --ray 1,2,3,4,5,6 --light 1", "leave out --light"},
+        {"balls --ray 1,2,3,4,5,6 --rays reflection", "leave out --light, and --rays"},
+        {"balls --ray nothing.npy:0", "nothing.npy: cannot be opened"},
         {"balls --pixel 3", "as in 256,200"},
         {"balls --pixel -1,2", "as in 256,200"},
         {"balls --pixel 4294967300,1", "as in 256,200"},
@@ -207,6 +278,9 @@ RT_TEST(a_page_to_explore_holds_the_rays_and_names_the_accelerators) {
     if (code == 2 && says(OUT ".err", "npm")) RT_SKIP("npm, and a network once");
     assert_int_equal(code, 0);
     assert_true(says(OUT ".txt", "with the rays of all pixels"));
+    assert_true(says(OUT ".html", "{\"given\":false,"));
+    assert_int_equal(raytally_to("> /dev/null", "%s --ray 0,0,9,0,0,-1", all), 0);
+    assert_true(says(OUT ".html", "{\"given\":true,"));
     assert_true(says(OUT ".html", "{\"accel\":\"bvh\",") &&
                 says(OUT ".html", "{\"accel\":\"grid:density=1\","));
     unlink(OUT ".html");

@@ -144,7 +144,7 @@ RT_TEST(what_cannot_be_verified_is_refused_before_anything_is_printed) {
         {"--threads -1", "whole number"},
         {"--memory 0", "as in 512M or 4G"},
         {"--memory 4Gi", "as in 512M or 4G"},
-        {"--wrong", "unrecognized option"},
+        {"--invalid", "unrecognized option"},
         {"--families", "unrecognized option"},
         {"--resume", "--out DIR"},
         {"--force", "--out DIR"},
@@ -152,6 +152,11 @@ RT_TEST(what_cannot_be_verified_is_refused_before_anything_is_printed) {
         {"family:kind=", "empty|one-sphere|"},
         {"family:kind=slivers,sed=1", "did you mean 'seed'?"},
         {"family:kind=slivers,seed=", "seed"},
+        {"balls:size=1 --hits-from x.npy", "of the rays of --rays-from"},
+        {"balls:size=1 tetra:size=1 --rays-from r.npy --hits-from x.npy", "on one SCENE"},
+        {"balls:size=1 tetra:size=1 --wrong-rays x.npy", "of one SCENE"},
+        {"balls:size=1 --wrong-rays x.txt", "ends in .npy"},
+        {"balls:size=1 --wrong-rays x.npy --out d --resume", "no --resume"},
         {"--replay nothing.json", "nothing.json"},
         {"--replay nothing.json balls", "takes no SCENE"},
         {"--replay nothing.json --json", "prints text"},
@@ -327,6 +332,83 @@ RT_TEST(a_replay_says_whether_the_answer_is_still_wrong) {
 RT_TEST(a_replay_that_cannot_be_asked_is_not_called_wrong) {
     write_replay(OUT ".json", "null");
     assert_said(verify("--replay '" OUT ".json'"), 2, OUT ".err", "has changed since");
+}
+
+/* ---- hits from files ---- */
+
+#define GIVEN "balls:size=1 --rays-from '" OUT ".rays.npy' --hits-from '" OUT ".hits.npy'"
+
+/* Writes the rays, and our own hits; in `wrong` rays from the first that hits on another t, by this factor.
+ */
+static void write_hits(int wrong, float factor) {
+    assert_int_equal(raytally_to("> /dev/null", "rays balls:size=1 --size 40x40 -o '" OUT ".rays.npy'"), 0);
+    assert_int_equal(
+        raytally_to("> /dev/null",
+                    "bench balls:size=1 --accel bvh --count-only --rays nearest --rays-from '" OUT
+                    ".rays.npy' --hits '" OUT ".hits.npy'"),
+        0);
+    struct __attribute__((packed)) {
+        float t;
+        int64_t object;
+    } hit;
+    FILE *file = fopen(OUT ".hits.npy", "r+b");
+    assert_non_null(file);
+    fseek(file, 128, SEEK_SET); /* behind the header */
+    while (wrong > 0 && fread(&hit, sizeof hit, 1, file) == 1) {
+        if (hit.object < 0) continue;
+        hit.t *= factor;
+        fseek(file, -(long)sizeof hit, SEEK_CUR);
+        assert_int_equal(fwrite(&hit, sizeof hit, 1, file), 1);
+        fseek(file, 0, SEEK_CUR);
+        wrong--;
+    }
+    fclose(file);
+}
+
+RT_TEST(hits_of_another_program_are_judged_without_an_accelerator) {
+    write_hits(3, 1.0000001f);
+    json_auto_t *json = document(GIVEN " --json");
+    const json_t *rows = json_object_get(json, "rows"), *row = json_array_get(rows, 0);
+    assert_int_equal(json_array_size(rows), 1);
+    assert_string_equal(accel_of(rows, 0), OUT ".hits.npy");
+    assert_int_equal(number(row, "rays"), 1600);
+    assert_int_equal(number(row, "equal"), 1600);
+    assert_int_equal(number(row, "certain_of"), 1600);
+    assert_true(json_is_false(json_object_get(row, "exact")));
+    assert_true(json_is_null(json_object_get(row, "occluded_wrong")));
+    assert_int_equal(verify(GIVEN " --accel grid"), 0);
+    assert_non_null(
+        strstr(text_of(OUT ".out"), "2 accelerators, 1600 rays, 3200 comparisons: 1600 bit for bit"));
+}
+
+RT_TEST(the_first_wrong_hit_of_another_program_is_kept_as_a_scene_and_all_their_rays_as_a_file) {
+    write_hits(5, 1.5f);
+    assert_int_equal(verify(GIVEN " --wrong-rays '" OUT ".wrong.npy' --out '" OUT ".near' --force"), 1);
+    assert_non_null(strstr(text_of(OUT ".err"), "wrong.npy: 5 rays with a wrong answer"));
+    assert_non_null(strstr(text_of(OUT ".out"), "displaced 5\n"));
+    const char *scene = strstr(text_of(OUT ".out"), "raytally trace '" OUT ".near/0001-");
+    assert_non_null(scene);
+    char again[1024], expected[64];
+    snprintf(again, sizeof again, "%.*s", (int)(strstr(scene, " --svg") - scene - 9), scene + 9);
+    const char *says = strstr(text_of(OUT ".out"), "at t = ");
+    snprintf(expected, sizeof expected, "%.*s", (int)strcspn(says, ","), says);
+    assert_int_equal(raytally_to("> '" OUT ".out'", "%s", again), 0);
+    assert_non_null(strstr(text_of(OUT ".out"), expected));
+    /* The same file of rays, and no wrong answer. */
+    assert_int_equal(
+        verify("balls:size=1 --accel bvh --rays-from '" OUT ".wrong.npy' --wrong-rays '" OUT ".none.npy'"),
+        0);
+    assert_non_null(strstr(text_of(OUT ".out"), "5 comparisons: nothing wrong"));
+    assert_non_null(strstr(text_of(OUT ".err"), "none.npy: 0 rays with a wrong answer"));
+}
+
+RT_TEST(hits_are_judged_again_only_if_they_are_the_same) {
+    write_hits(0, 1);
+    begin_anew(GIVEN " --out '" OUT ".judged'");
+    assert_int_equal(verify(GIVEN " --out '" OUT ".judged' --resume"), 0);
+    assert_non_null(strstr(text_of(OUT ".judged/verify.md"), "1600 comparisons are with hits of a file"));
+    write_hits(1, 1.5f);
+    assert_said(verify(GIVEN " --out '" OUT ".judged' --resume"), 2, OUT ".err", "with different hits_hash");
 }
 
 RT_TESTS(cmd_verify, NULL, NULL)

@@ -187,6 +187,24 @@ async function checkBuffers(page, spec) {
   holds(/cell \d+ of the cube around light \d, on the side [+-][xyz]: a list of \d+ objects?/.test(cell), `a shadow ray shows its cell: ${cell}`);
 }
 
+async function checkGiven(page, ray) {
+  await open(page);
+  const expected = flat(JSON.parse(execFileSync(program, ['trace', scene, '--size', size, '--ray', ray, '--accel', 'item+bvh', '--depth', '3', '--json'])).tree);
+  const isShown = async (when) => {
+    const { said, rays } = await shown();
+    holds(said.startsWith(`the given ray: ${expected.length} ray`) && rays.length === expected.length &&
+      rays[0][1] === `object ${expected[0].object}, ${expected[0].shape}`, `${when} the page shows the given ray and its tree: ${said}`);
+  };
+  await isShown('at first');
+  await press('last');
+  const { panels: [panel] } = await shown();
+  holds(same(sums(panel, 0), counters(expected[0].counts)), `it counts what trace counts: ${JSON.stringify(panel.counts)}`);
+  await choosePixel(22, 17);
+  holds((await shown()).said.startsWith('pixel 22,17:'), 'the pixels are there too');
+  await press('given');
+  await isShown('by its button');
+}
+
 async function checkWithoutWebGL(page) {
   const { identifier } = await browser.before(`const old = HTMLCanvasElement.prototype.getContext;
     HTMLCanvasElement.prototype.getContext = function (kind, ...more) { return /webgl/.test(kind) ? null : old.call(this, kind, ...more); };
@@ -212,10 +230,11 @@ async function checkLooks(page, width, scheme) {
 }
 
 try {
-  const accels = ['bvh', 'grid'], buffers = 'item+light:cells=20+octree';
+  const accels = ['bvh', 'grid'], given = '0.1,0.2,9,0,0.01,-1', buffers = 'item+light:cells=20+octree';
   explore('walk.html', accels);
   explore('buffers.html', [buffers]);
   exploreScene('random:n=30000', 'deep.html', ['kd'], '--size', '8x6');
+  explore('given.html', ['item+bvh'], '--ray', given);
   explore('limited.html', ['brute'], '--megabytes', '1', '--size', '400x300');
   await browser.size(390, 300); // drawn in software, a frame of a large window takes seconds
   await browser.media('screen');
@@ -227,6 +246,7 @@ try {
   await checkPointerAndKeys();
   await checkStructures();
   await checkBuffers('buffers.html', buffers);
+  await checkGiven('given.html', given);
   await checkWithoutWebGL('walk.html');
   for (const width of [390, 768, 1440]) for (const scheme of ['light', 'dark']) await checkLooks('walk.html', width, scheme);
   await browser.size(390, 300);
@@ -236,7 +256,7 @@ try {
   await open('limited.html');
   holds(statSync('limited.html').size < 4e6, `paths take the room that they are given: ${statSync('limited.html').size} bytes`);
   holds(/of one pixel in (\d+) x \1/.test(await browser.run("return document.querySelector('#about').textContent;")), 'the page says which pixels it has');
-  await judgeLogs(browser, (to) => ['walk.html', 'buffers.html', 'deep.html', 'limited.html'].map(url).includes(to), holds);
+  await judgeLogs(browser, (to) => ['walk.html', 'buffers.html', 'given.html', 'deep.html', 'limited.html'].map(url).includes(to), holds);
   if (judge.failures === 0) console.log(`check_pages: the explorer shows what trace prints${axe ? '; axe finds nothing serious' : ''}`);
 } finally {
   await browser.close();

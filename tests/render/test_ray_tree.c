@@ -82,6 +82,26 @@ RT_TEST(the_trees_of_a_tile_are_those_of_its_samples_one_by_one) {
     }
 }
 
+/* `item` does not know it, and passes it on. */
+RT_TEST(the_tree_of_a_given_ray_is_that_of_the_sample_whose_ray_it_is) {
+    OWNED_SCENE scene = busy_scene();
+    assert_ok(rt_scene_sample(&scene, 20, 20, 1, false, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "item+bvh");
+    for (uint32_t row = 0; row < 20; row += 3) {
+        OWNED_TREE tree = tree_of(accel, 17, row, 4), given = {0};
+        RtRay ray = tree.rays[0].ray;
+        ray.kind = RT_RAY_RANDOM;
+        assert_ok(rt_ray_tree_trace_given(&given, accel, &ray, 4, error));
+        assert_memory_equal(&given.color, &tree.color, sizeof tree.color);
+        assert_int_equal(given.count, tree.count);
+        assert_int_equal(given.rays[0].ray.source, RT_NO_RAY);
+        for (uint32_t k = 0; k < tree.count; k++) {
+            assert_int_equal(given.rays[k].ray.kind, tree.rays[k].ray.kind);
+            assert_memory_equal(&given.rays[k].terms, &tree.rays[k].terms, sizeof tree.rays[k].terms);
+        }
+    }
+}
+
 RT_TEST(the_five_terms_of_a_hit_add_up_to_the_light_that_comes_from_it_bit_for_bit) {
     OWNED_SCENE scene = busy_scene();
     assert_ok(rt_scene_sample(&scene, 16, 12, 1, false, error));

@@ -142,6 +142,107 @@ RT_TEST(an_accelerator_that_is_not_exact_is_judged_by_verdicts) {
     stage->liar.base.exact = true;
 }
 
+/* ---- recorded answers ---- */
+
+/* The reference's own answers, by name, or by t alone. */
+static void record(const Stage *stage, RtHit *hits, bool named) {
+    memcpy(hits, stage->reference.hits, RAYS * sizeof *hits);
+    for (size_t i = 0; i < RAYS && !named; i++)
+        if (hits[i].object != RT_NO_OBJECT) hits[i].object = RT_UNNAMED_OBJECT;
+}
+
+static RtEquivalence judge(const Stage *stage, const RtHit *hits) {
+    RtEquivalence one, many;
+    memset(stage->reference.wrong, 0, RAYS * sizeof(bool));
+    assert_ok(rt_equivalence_judge(&stage->reference, hits, 1, &one, error));
+    assert_ok(rt_equivalence_judge(&stage->reference, hits, 3, &many, error));
+    assert_int_equal(one.rays, RAYS);
+    assert_memory_equal(one.verdicts, many.verdicts, sizeof one.verdicts);
+    assert_memory_equal(one.faults, many.faults, sizeof one.faults);
+    assert_int_equal(one.first_wrong.index, many.first_wrong.index);
+    uint64_t wrong = 0;
+    for (size_t i = 0; i < RAYS; i++) wrong += stage->reference.wrong[i];
+    assert_int_equal(wrong, one.verdicts[RT_WRONG]);
+    return one;
+}
+
+RT_TEST(recorded_answers_are_equal_if_rounding_explains_them_with_or_without_an_object) {
+    static RtHit hits[RAYS];
+    for (int named = 0; named < 2; named++) {
+        record(*state, hits, named);
+        assert_int_equal(judge(*state, hits).verdicts[RT_EQUAL], RAYS);
+        hits[LAST].t = nextafterf(hits[LAST].t, INFINITY);
+        assert_int_equal(judge(*state, hits).verdicts[RT_EQUAL], RAYS);
+    }
+}
+
+RT_TEST(recorded_answers_that_are_wrong_are_found_with_their_faults) {
+    static RtHit hits[RAYS];
+    const Stage *stage = *state;
+    size_t miss = 0;
+    while (stage->reference.hits[miss].object != RT_NO_OBJECT) miss++;
+    for (int named = 0; named < 2; named++) {
+        record(stage, hits, named);
+        hits[77] = RT_MISS;
+        hits[1234].t *= 0.9f;
+        hits[miss] = (RtHit){1e6f, named ? 0 : RT_UNNAMED_OBJECT};
+        const RtEquivalence e = judge(stage, hits);
+        assert_int_equal(e.verdicts[RT_WRONG], 3);
+        assert_int_equal(e.verdicts[RT_EQUAL], RAYS - 3);
+        assert_int_equal(e.faults[RT_FAULT_LOST], 1);
+        assert_int_equal(e.faults[RT_FAULT_DISPLACED], 1);
+        assert_int_equal(e.faults[RT_FAULT_BESIDE], 1);
+        assert_int_equal(e.sides[RT_SIDE_EXPECTED], 3);
+        assert_int_equal(e.first_wrong.index, miss < 77 ? miss : 77);
+        assert_true(stage->reference.wrong[77] && stage->reference.wrong[1234]);
+    }
+}
+
+/* A t alone is that of any object that is there. */
+RT_TEST(a_recorded_t_behind_the_nearest_object_is_wrong_without_a_name_too) {
+    static RtHit hits[RAYS];
+    const Stage *stage = *state;
+    size_t checked = 0;
+    OWNED_QUERY query = open_query(stage->brute);
+    record(stage, hits, false);
+    for (size_t i = 0; i < RAYS; i++) {
+        RtHit behind;
+        RtRay ray = asked_rays[i];
+        if (hits[i].object == RT_NO_OBJECT) continue;
+        ray.tmin = hits[i].t * 1.01f + 0.01f;
+        rt_nearest(&query, &ray, 1, &behind, NULL);
+        if (behind.object == RT_NO_OBJECT || behind.object == stage->reference.hits[i].object) continue;
+        hits[i].t = behind.t;
+        checked++;
+    }
+    const RtEquivalence e = judge(stage, hits);
+    assert_true(checked > 50);
+    assert_in_range(e.faults[RT_FAULT_BEHIND], checked * 9 / 10, checked);
+    assert_in_range(e.verdicts[RT_EQUAL] + e.faults[RT_FAULT_BEHIND], RAYS * 99 / 100, RAYS);
+}
+
+RT_TEST(the_objects_near_a_wrong_ray_answer_it_like_the_whole_scene) {
+    const char *path = RT_BINARY_DIR "/test_near.yaml";
+    const Stage *stage = *state;
+    const size_t indices[] = {77, 1234, LAST};
+    for (size_t i = 0; i < 3; i++) {
+        const RtHit expected = stage->reference.hits[indices[i]];
+        const uint32_t other = expected.object ^ 1;
+        const RtWrongAnswer wrong = {.ray = asked_rays[indices[i]], .expected = expected, .got = {1, other}};
+        uint32_t count;
+        RtHit hit;
+        assert_ok(rt_near_save(&stage->scene, &wrong, path, &count, error));
+        OWNED_SCENE scene = open_scene(path);
+        OWNED_ACCEL RtAccel *brute = open_accel(&scene, "brute");
+        OWNED_QUERY query = open_query(brute);
+        rt_nearest(&query, &wrong.ray, 1, &hit, NULL);
+        assert_memory_equal(&hit.t, &expected.t, sizeof hit.t);
+        assert_int_equal(scene.geometry.object_count, count);
+        assert_in_range(count, 2, stage->scene.geometry.object_count / 2);
+    }
+    unlink(path);
+}
+
 /* ---- what goes wrong beneath the kernels ---- */
 
 static RtStatus check_of_liar(const RtAccel *accel, RtError *error) {

@@ -58,7 +58,7 @@ static json_t *verify_as(RtVerify work, uint64_t rays, int threads, const char *
 
 /* Verifies grid and a mutant on both scenes. */
 static json_t *verify(const char *folder, int threads, RtStart start) {
-    static const RtVerifySpec specs[] = {{"grid", true, true}, {UNPADDED, true, true}};
+    static const RtVerifySpec specs[] = {{"grid", true, true, false}, {UNPADDED, true, true, false}};
     const RtVerify work = {
         .scenes = scenes, .scene_count = 2, .specs = specs, .spec_count = 2, .start = start};
     return verify_as(work, 6000, threads, folder);
@@ -160,7 +160,7 @@ static RtStatus build_noting_threads(RtAccel *accel, const RtBuild *what, RtErro
 }
 
 RT_TEST(accelerators_are_built_on_the_threads_of_the_run) {
-    const RtVerifySpec spec = {"noting", true, true};
+    const RtVerifySpec spec = {"noting", true, true, false};
     for (int threads = 1; threads <= 3; threads += 2) {
         json_decref(verify_spec(&spec, scenes, 1, 100, threads, NULL));
         assert_int_equal(threads_of_build, threads);
@@ -184,7 +184,7 @@ static void count_notice(void *context, const char *message) {
 }
 
 RT_TEST(a_wrong_answer_is_shown_though_its_replay_file_cannot_be_written) {
-    const RtVerifySpec spec = {UNPADDED, true, true};
+    const RtVerifySpec spec = {UNPADDED, true, true, false};
     const RtVerifyObserver counting = {on_doing, on_row, count_notice, NULL};
     const RtVerify work = {.scenes = scenes,
                            .scene_count = 1,
@@ -209,7 +209,7 @@ RT_TEST(an_accelerator_has_as_many_failures_shrunk_as_are_asked_for) {
     static const char *const three[] = {"family:kind=plane,seed=1", "family:kind=axis-aligned,seed=1",
                                         "family:kind=axis-aligned,seed=2"};
     static const uint32_t wanted[] = {0, 2, RT_SHRINK_ALL};
-    const RtVerifySpec spec = {UNPADDED, true, true};
+    const RtVerifySpec spec = {UNPADDED, true, true, false};
     for (size_t w = 0; w < 3; w++) {
         shrink = wanted[w];
         json_auto_t *rows = verify_spec(&spec, three, 3, 6000, 0, OUT "/s");
@@ -240,7 +240,7 @@ static void lose_last(const RtAccel *accel, const RtScratch *scratch, const RtRa
 }
 
 RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
-    const RtVerifySpec spec = {"losing", true, true};
+    const RtVerifySpec spec = {"losing", true, true, false};
     OWNED(rt_replay_clear) RtReplay replay;
     RtAnswer answer;
     shortest_losing = 2;
@@ -256,7 +256,7 @@ RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
 
 /* Including the camera's rays, which come first: they form packets. */
 RT_TEST(the_first_rays_are_asked_in_long_streams_as_well_as_alone) {
-    const RtVerifySpec spec = {"losing", true, true};
+    const RtVerifySpec spec = {"losing", true, true, false};
     shortest_losing = 64;
     json_auto_t *rows = verify_spec(&spec, scenes + 1, 1, 1000, 0, OUT "/h");
     assert_true(rt_verify_row_fails(json_array_get(rows, 0)));

@@ -91,7 +91,7 @@ function chooseRay(i) {
 function choosePixel(column, row) {
   const x = column * data.stride + (data.stride >> 1), y = row * data.stride + (data.stride >> 1);
   ({ rays: state.tree, color: state.color } = data.pixel(column, row));
-  mark(column, row, `pixel ${x},${y}: ${plural(state.tree.length, 'ray')}, ${data.nameOf(state.tree[0]?.object ?? null)}`);
+  mark(column, row, `${row < data.rows ? `pixel ${x},${y}` : 'the given ray'}: ${plural(state.tree.length, 'ray')}, ${data.nameOf(state.tree[0]?.object ?? null)}`);
   showTree(data, state.tree, 0, chooseRay);
   chooseRay(0);
 }
@@ -179,4 +179,8 @@ byId('on').addEventListener('click', () => { play(false); showStep(state.step + 
 byId('last').addEventListener('click', () => { play(false); showStep(steps()); });
 byId('play').addEventListener('click', () => play(!state.playing));
 byId('step').addEventListener('input', () => { play(false); showStep(Number(byId('step').value)); });
-choosePixel(data.columns >> 1, data.rows >> 1);
+const showGiven = () => choosePixel(0, data.rows); // recorded as the pixel after the last
+byId('given').hidden = !data.given;
+byId('given').addEventListener('click', showGiven);
+if (data.given) showGiven();
+else choosePixel(data.columns >> 1, data.rows >> 1);

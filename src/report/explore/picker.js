@@ -54,8 +54,8 @@ export function makePicker(data, choose) {
         context.stroke();
       }
     }
-    byId('pixel-x').value = at(column);
-    byId('pixel-y').value = at(row);
+    byId('pixel-x').value = row < data.rows ? at(column) : '';
+    byId('pixel-y').value = row < data.rows ? at(row) : '';
     byId('pixel-said').textContent = said;
     canvas.setAttribute('aria-label', `The image of ${data.scene.name}; ${said}`);
   };
