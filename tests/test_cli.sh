@@ -247,7 +247,7 @@ refuses 'bad\.obj:1: .*vertex 1, but there are 0' render bad.obj -o x.png
 printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'f 1 2 9' >index.obj
 refuses 'index\.obj:4: .*vertex 9' render index.obj -o x.png
 printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v nan 1 0' 'f 1 2 3' >nan.obj
-refuses 'nan\.obj:3: .*finite number' render nan.obj -o x.png
+refuses 'nan\.obj:4: .*not finite' render nan.obj -o x.png
 printf '%s\n' 'v 0 0 0' 'v 1 0 0' >points.obj
 refuses 'points\.obj: .*no triangle' render points.obj -o x.png
 printf '%s\n' ply 'format ascii 1.0' 'element vertex 1000000000' 'property float x' 'property float y' 'property float z' end_header >huge.ply
