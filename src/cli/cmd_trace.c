@@ -452,6 +452,7 @@ static RtStatus run(Options *o, RtError *error) {
     if (o->ray) RT_TRY(rt_cli_ray(o->ray, &o->given, error));
     if (o->kind == RT_RAY_SHADOW) o->given.kind = RT_RAY_OCCLUSION;
     RT_TRY(rt_accel_build(&spec, &scene, 0, &accel, error));
+    rt_cli_tell_idle(o->accel, accel);
     RT_TRY(rt_path_available(accel, text, error));
     return (o->depth > 0 ? trace_tree : trace_path)(o, &scene, accel, text, error);
 }
