@@ -229,9 +229,12 @@ static void draw_ray(const Drawing *d) {
     const double left = (w->x - point_at(d, w, 0).x) / (w->section.scale * d->speed); /* t at the left side */
     const double hit = (double)d->path->hit.t, last = fmin(fmin((double)ray->tmax, d->farthest), hit);
     const RtPoint from = point_at(d, w, fmax((double)ray->tmin, left)), to = point_at(d, w, last);
-    rt_add_line(d->cairo, from, to);
+    const double back =
+        isfinite(hit) ? fmin(5.5 / hypot(to.x - from.x, to.y - from.y), 1) : 0; /* the dot's rim */
+    const RtPoint tip = {to.x + back * (from.x - to.x), to.y + back * (from.y - to.y)};
+    rt_add_line(d->cairo, from, tip);
     rt_paint(d->cairo, (RtStyle){RT_BLACK, 1.5, 0, false});
-    rt_draw_arrow_head(d->cairo, from, to, 12, RT_BLACK);
+    rt_draw_arrow_head(d->cairo, from, tip, d->window == &d->detail ? 12 : 7, RT_BLACK);
     if (ray->kind != RT_RAY_PRIMARY) rt_draw_disc(d->cairo, point_at(d, w, 0), 4, RT_BLACK);
     if (!isfinite(hit)) return;
     rt_draw_disc(d->cairo, to, 5.5, RT_WHITE);
