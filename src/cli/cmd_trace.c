@@ -86,6 +86,24 @@ static void print_span(const RtPath *path, const RtPathRow *row, uint32_t i) {
     print_t(leave);
 }
 
+/* Of a test of a polygon whose box the ray meets: where its plane is met, in the projection, and the edges
+ * that a half-line from there crosses. */
+static void print_projection(const RtPath *path, const RtPathRow *row, const RtGeometry *g) {
+    if (row->kind != RT_TRACED_OBJECT_TEST || row->index >= g->object_count || rt_path_row_spans(row) == 0)
+        return;
+    if (rt_ref_shape(g->objects[row->index]) != RT_SHAPE_POLYGON) return;
+    const uint32_t index = rt_ref_index(g->objects[row->index]);
+    const RtPolygon *polygon = &g->polygons[index];
+    const RtVec3d org = rt_widen(path->ray.org), dir = rt_widen(path->ray.dir);
+    const double at = rt_dotd(polygon->normal, rt_subd(polygon->center, org)) / rt_dotd(polygon->normal, dir);
+    if (!isfinite(at)) return;
+    const RtVec3d point = rt_add_scaledd(org, dir, at);
+    const uint32_t crossed = rt_polygon_crossings(polygon, rt_polygon_vertices(g, index), point);
+    printf("%23s  its plane at t = %.6g; projected to %c, %c: (%.6g, %.6g), %u edge%s crossed\n", "", at,
+           "xyz"[polygon->u], "xyz"[polygon->v], point.at[polygon->u], point.at[polygon->v], crossed,
+           rt_plural(crossed));
+}
+
 static void print_row(const RtPath *path, uint32_t index, const RtGeometry *g) {
     const RtPathRow *row = &path->rows[index];
     char of[RT_MAX_NAME + 16] = "";
@@ -110,6 +128,7 @@ static void print_row(const RtPath *path, uint32_t index, const RtGeometry *g) {
         print_span(path, row, i);
         putchar('\n');
     }
+    print_projection(path, row, g);
 }
 
 static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g) {
@@ -471,7 +490,10 @@ const RtSyntax rt_trace_syntax = {
         "sample or list entry; docs/guide/tables.md explains the other terms. A csg test shows all intervals "
         "of t in which the ray is "
         "inside the solid, a csg result those of an operation, which joins the last two lists (through a "
-        "plugin they are not seen); the row of the tree follows. The rows come from the counted "
+        "plugin they are not seen); the row of the tree follows. A line below the test of a polygon shows "
+        "where its plane is met, in the coordinate plane of the "
+        "projection, and how many edges a half-line from there along the first axis crosses: if odd, it is a "
+        "hit. The rows come from the counted "
         "kernel itself; raytally checks that they add up to its tally.\n\n"
         "The upper part of the drawing is a section along the ray and one axis of the scene; it shows boxes "
         "where the ray passes through them, pale if not tested or visited. It is enlarged where objects are "
