@@ -83,6 +83,22 @@ RT_TEST(a_csg_tree_shows_intervals_in_words_and_as_json_and_says_how_many_there_
     assert_true(json_number_value(json_array_get(json_array_get(intervals, 1), 1)) == 4);
 }
 
+RT_TEST(a_polygon_shows_its_projection_and_the_edges_that_are_crossed) {
+    FILE *file = fopen(OUT ".yaml", "w");
+    assert_non_null(file);
+    fputs("objects:\n  - polygon: {vertices: [[0, 0, 4], [6, 0, 4], [6, 4, 2], [4, 4, 2], [4, 2, 3], [2, 2, "
+          "3], "
+          "[2, 4, 2], [0, 4, 2]]}\n",
+          file);
+    fclose(file);
+    assert_int_equal(trace("'" OUT ".yaml' --ray 1,3,0,0,0,1 --accel brute"), 0);
+    assert_true(says(OUT ".txt", "its plane at t = 2.5; projected to x, y: (1, 3), 3 edges crossed"));
+    assert_int_equal(trace("'" OUT ".yaml' --ray 3,3,0,0,0,1 --accel brute"), 0);
+    assert_true(says(OUT ".txt", "(3, 3), 2 edges crossed") && says(OUT ".txt", "it hits nothing"));
+    assert_int_equal(trace("'" OUT ".yaml' --ray 9,3,0,0,0,1 --accel brute"), 0);
+    assert_false(says(OUT ".txt", "crossed")); /* beside its box */
+}
+
 RT_TEST(an_overlay_that_passes_on_every_ray_says_so_and_why) {
     const char *why = "light passes on every ray: ";
     assert_said(trace("balls:size=1 --size 64x64 --pixel 32,50 --accel light+bvh"), 0, OUT ".err", why);
