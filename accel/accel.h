@@ -44,9 +44,10 @@ typedef struct RtAccel {
     bool exact;               /* its hits equal brute's bit for bit; false: judged by verdicts */
     bool absolute;            /* not exact, and computes with absolute coordinates (exact/margin.h) */
     bool counts;              /* its counts are the same on every machine, so counts.csv has them */
-    double build_seconds;     /* wall seconds to build it and all layers below. Set by spec.c */
-    RtTally build_tally;      /* hit functions called while building; not part of tracing */
-    RtArena memory; /* of the structure: `build` allocates from it, and need not check; freed with it */
+    const char *idle;     /* why this overlay passes on every ray, as its build decided; NULL: it does not */
+    double build_seconds; /* wall seconds to build it and all layers below. Set by spec.c */
+    RtTally build_tally;  /* hit functions called while building; not part of tracing */
+    RtArena memory;       /* of the structure: `build` allocates from it, and need not check; freed with it */
 } RtAccel;
 
 /* Expected values for a random line through the box of a structure, by ratios of areas (MacDonald & Booth

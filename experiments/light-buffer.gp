@@ -29,10 +29,10 @@ set key at screen 0.985, screen 1 - 8.0 / height right top vertical maxrows key_
 set logscale x 2
 eval "set xtics ".ratio_tics(0.2, 2.1)
 set xrange [0.2 : 2.1]
-plot keyentry with points pointtype marker(1) pointsize 0.65 linecolor rgb hue(1) title word(accels, 1), \
+plot keyentry with points pointtype marker(1) pointsize 0.65 linecolor rgb color(1) title word(accels, 1), \
      for [a = 2:n_accels] for [s = 1:n_scenes] "times.csv" \
        using (chosen(s, a) ? column("ratio") : NaN):(place(s, a)):(column("ratio_low")):(column("ratio_high")) \
-       with xerrorbars linewidth 1.5 pointtype marker(a) pointsize 0.65 linecolor rgb hue(a) title (s == 1 ? says(a) : "")
+       with xerrorbars linewidth 1.5 pointtype marker(a) pointsize 0.65 linecolor rgb color(a) title (s == 1 ? says(a) : "")
 unset key
 unset arrow 1
 set logscale x 10
@@ -42,6 +42,6 @@ if (columns > 1) { set ytics (); do for [s = 1:n_scenes] { set ytics add ("" n_s
 set xlabel "time to build, in seconds" textcolor rgb ink
 plot for [a = 1:n_accels] for [s = 1:n_scenes] "times.csv" \
        using (chosen(s, a) ? column("build_seconds") : NaN):(place(s, a)):(column("build_low")):(column("build_high")) \
-       with xerrorbars linewidth 1.5 pointtype marker(a) pointsize 0.65 linecolor rgb hue(a) notitle
+       with xerrorbars linewidth 1.5 pointtype marker(a) pointsize 0.65 linecolor rgb color(a) notitle
 unset multiplot
 unset output

@@ -554,13 +554,20 @@ enum { BYTES_OF_OBJECT = 1024, MANY_OBJECTS = 12000 };
 static RtStatus fill_if_it_pays(RtLightBuffer *buffer, const RtBuild *what, Probes *probes, RtError *error) {
     const RtScene *scene = what->scene;
     uint64_t limit = (uint64_t)BYTES_OF_OBJECT * scene->geometry.object_count * scene->light_count;
+    const char **idle = &buffer->base.idle;
     bool pays = scene->geometry.object_count >= MANY_OBJECTS;
     if (probes) pays = probes->cost_below > WORTH_TRYING;
+    *idle = !probes ? "there are fewer than 12,000 objects, and the layer below counts nothing"
+            : probes->count < FEW_PROBES ? "few of the image's samples see a surface that faces a light"
+                                         : "shadow rays cost little in the layer below";
     if (!pays) return RT_OK;
     RT_TRY(fill(buffer, limit < what->limit ? limit : what->limit, what->threads, error));
+    *idle = buffer->serves ? NULL : "lists would take more than 1 KB for each object and light";
     if (!probes || !buffer->serves) return RT_OK;
     RT_TRY(check_that_it_pays(buffer, probes, &pays, error));
-    if (!pays) drop_lists(buffer);
+    if (pays) return RT_OK;
+    drop_lists(buffer);
+    *idle = "lists would save no time";
     return RT_OK;
 }
 

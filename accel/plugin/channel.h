@@ -108,10 +108,10 @@ enum { MOST_EVENTS = 1024 };
 typedef struct Event {
     uint32_t kind, index;
     float t;
-    uint32_t leaf, empty, met, boxed, round; /* 0 or 1 */
-    RtBox box;                               /* if boxed */
-    RtBall ball;                             /* if round */
-    char what[RT_MAX_NAME];                  /* "": nothing */
+    uint32_t leaf, empty, met, boxed, round, in_tree; /* 0 or 1 */
+    RtBox box;                                        /* if boxed */
+    RtBall ball;                                      /* if round */
+    char what[RT_MAX_NAME];                           /* "": nothing */
 } Event;
 
 typedef struct Events {

@@ -522,6 +522,7 @@ static void observe_event(Event e) {
                            .leaf = e.leaf != 0,
                            .empty = e.empty != 0,
                            .met = e.met != 0,
+                           .in_tree = e.in_tree != 0,
                            .t = e.t});
 }
 

@@ -193,6 +193,7 @@ static void send_event(void *context, const RtTraced *event) {
                    .leaf = event->leaf,
                    .empty = event->empty,
                    .met = event->met,
+                   .in_tree = event->in_tree,
                    .boxed = event->box != NULL,
                    .round = event->ball != NULL};
     if (event->box) out->box = *event->box;

@@ -62,6 +62,14 @@ bool rt_cli_leave_out(RtStatus status, const char **specs, uint32_t *count, uint
     return true;
 }
 
+void rt_cli_tell_idle(const char *spec, const RtAccel *accel) {
+    for (; accel; accel = accel->below) {
+        if (accel->idle)
+            fprintf(stderr, "raytally: %s: %s passes on every ray: %s\n", spec, accel->ops->name,
+                    accel->idle);
+    }
+}
+
 void rt_cli_take_memory(void *options, const char *text, struct argp_state *state) {
     (void)options;
     rt_memory_limit_process(bytes_of(state, "--memory", text));

@@ -210,6 +210,9 @@ void rt_cli_take_time(void *options, const char *text, struct argp_state *state)
             "Time limit for the whole command, which then ends with exit code 2" kept                        \
     }
 
+/* Says to stderr which overlays of the accelerator pass on every ray, and why. */
+void rt_cli_tell_idle(const char *spec, const RtAccel *accel);
+
 /* Whether the build of specs[i] of [0..*count) was refused, and the command goes on with the others: says so,
  * and removes it. */
 bool rt_cli_leave_out(RtStatus status, const char **specs, uint32_t *count, uint32_t i, const RtError *why);

@@ -49,6 +49,7 @@ static RtStatus build(RtAccel **accels, RtExploredSpec *specs, char (*texts)[RT_
             continue;
         }
         RT_TRY(status);
+        rt_cli_tell_idle(o->accels[i], accels[i]);
         RT_TRY(rt_path_available(accels[i], texts[i], error));
         specs[i] = (RtExploredSpec){o->accels[i], texts[i]};
     }

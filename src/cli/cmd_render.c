@@ -252,6 +252,7 @@ static RtStatus build(Run *run, uint32_t i, RtAccel **accel, RtError *error) {
     double start = rt_wall_seconds();
     RT_TRY(rt_accel_build(&spec, &run->scene, run->options->threads, accel, error));
     built->build_seconds = rt_wall_seconds() - start;
+    rt_cli_tell_idle(run->options->accels[i], *accel);
     rt_accel_describe(*accel, &built->description);
     return RT_OK;
 }

@@ -78,7 +78,34 @@ static const char *shape_of(const RtGeometry *g, uint32_t id) {
     return id < g->object_count ? rt_shape_name(rt_ref_shape(g->objects[id])) : "of unknown id";
 }
 
-static void print_row(const RtPathRow *row, uint32_t number, const RtGeometry *g) {
+/* Interval `i`, or "-" twice. */
+static void print_span(const RtPath *path, const RtPathRow *row, uint32_t i) {
+    double enter = (double)INFINITY, leave = (double)INFINITY;
+    if (i < rt_path_row_spans(row)) rt_path_row_span(path, row, i, &enter, &leave);
+    print_t(enter);
+    print_t(leave);
+}
+
+/* Of a test of a polygon whose box the ray meets: where its plane is met, in the projection, and the edges
+ * that a half-line from there crosses. */
+static void print_projection(const RtPath *path, const RtPathRow *row, const RtGeometry *g) {
+    if (row->kind != RT_TRACED_OBJECT_TEST || row->index >= g->object_count || rt_path_row_spans(row) == 0)
+        return;
+    if (rt_ref_shape(g->objects[row->index]) != RT_SHAPE_POLYGON) return;
+    const uint32_t index = rt_ref_index(g->objects[row->index]);
+    const RtPolygon *polygon = &g->polygons[index];
+    const RtVec3d org = rt_widen(path->ray.org), dir = rt_widen(path->ray.dir);
+    const double at = rt_dotd(polygon->normal, rt_subd(polygon->center, org)) / rt_dotd(polygon->normal, dir);
+    if (!isfinite(at)) return;
+    const RtVec3d point = rt_add_scaledd(org, dir, at);
+    const uint32_t crossed = rt_polygon_crossings(polygon, rt_polygon_vertices(g, index), point);
+    printf("%23s  its plane at t = %.6g; projected to %c, %c: (%.6g, %.6g), %u edge%s crossed\n", "", at,
+           "xyz"[polygon->u], "xyz"[polygon->v], point.at[polygon->u], point.at[polygon->v], crossed,
+           rt_plural(crossed));
+}
+
+static void print_row(const RtPath *path, uint32_t index, const RtGeometry *g) {
+    const RtPathRow *row = &path->rows[index];
     char of[RT_MAX_NAME + 16] = "";
     if (row->kind == RT_TRACED_OBJECT_TEST)
         snprintf(of, sizeof of, "object %u, %s", row->index, shape_of(g, row->index));
@@ -86,23 +113,27 @@ static void print_row(const RtPathRow *row, uint32_t number, const RtGeometry *g
         snprintf(of, sizeof of, "by %s", row->what);
     else if (*row->what)
         snprintf(of, sizeof of, "%s %u", row->what, row->index);
-    bool is_in = row->boxed && row->enter <= row->leave;
-    printf("%5u  %-14s  %-24s", number, rt_path_row_name(row), of);
-    print_t(is_in ? row->enter : (double)INFINITY);
-    print_t(is_in ? row->leave : (double)INFINITY);
+    printf("%5u  %-14s  %-24s", index + 1, rt_path_row_name(row), of);
+    print_span(path, row, 0);
     if (!rt_path_row_answers(row))
-        printf("  %-18s", "");
+        printf("  %-18s", row->listed && row->end_count == 0 ? "empty" : "");
     else if (row->kind == RT_TRACED_OBJECT_TEST && row->met)
         printf("  hit at %-11.6g", (double)row->t);
     else
         printf("  %-18s", row->met ? "hit" : "missed");
     print_t((double)row->nearest);
     putchar('\n');
+    for (uint32_t i = 1; i < rt_path_row_spans(row); i++) {
+        printf("%5s  %-14s  %-24s", "", "", "  and");
+        print_span(path, row, i);
+        putchar('\n');
+    }
+    print_projection(path, row, g);
 }
 
 static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g) {
     uint32_t left_out = 0, joined = 0;
-    printf("\n%5s  %-14s  %-24s  %-20s  %-18s  %9s\n", "", "", "", " ray in its box, t", "", "nearest t");
+    printf("\n%5s  %-14s  %-24s  %-20s  %-18s  %9s\n", "", "", "", " ray inside, t", "", "nearest t");
     for (uint32_t i = 0, run; i < path->count; i += run) {
         const RtPathRow *row = &path->rows[i];
         bool hits = row->kind == RT_TRACED_OBJECT_TEST && row->met;
@@ -111,7 +142,7 @@ static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g
         if (o->rows > 0 && (int64_t)i >= o->rows && !hits) {
             left_out += run;
         } else if (run == 1) {
-            print_row(row, i + 1, g);
+            print_row(path, i, g);
         } else {
             printf("%5u  %-14s  %u objects, to row %-41u  %-18s", i + 1, "object tests", run, i + run,
                    "all missed");
@@ -267,7 +298,7 @@ static void print_tree(const RtRayTree *tree, const RtTally *costs, const RtScen
 
 /* ---- as JSON ---- */
 
-static json_t *row_json(const RtPathRow *row) {
+static json_t *row_json(const RtPath *path, const RtPathRow *row) {
     bool is_in = row->boxed && row->enter <= row->leave;
     json_t *json = json_pack(
         "{s:s, s:s?, s:I, s:o, s:o, s:o, s:o, s:o}", "event", rt_path_row_name(row), "of",
@@ -282,6 +313,13 @@ static json_t *row_json(const RtPathRow *row) {
         json_object_set_new(
             json, "box",
             json_pack("[o, o]", rt_cli_vector_json(row->box.lo), rt_cli_vector_json(row->box.hi)));
+    json_t *intervals = row->listed ? json_array() : NULL;
+    for (uint32_t i = 0; intervals && i < rt_path_row_spans(row); i++) {
+        double enter, leave;
+        rt_path_row_span(path, row, i, &enter, &leave);
+        json_array_append_new(intervals, json_pack("[o, o]", rt_json_number(enter), rt_json_number(leave)));
+    }
+    if (intervals) json_object_set_new(json, "intervals", intervals);
     return json;
 }
 
@@ -294,7 +332,7 @@ static json_t *pixel_json(const Options *o) {
 static json_t *path_json(const RtPath *path, const Options *o, const char *spec) {
     const RtRay *r = &path->ray;
     json_t *rows = json_array();
-    for (uint32_t i = 0; i < path->count; i++) json_array_append_new(rows, row_json(&path->rows[i]));
+    for (uint32_t i = 0; i < path->count; i++) json_array_append_new(rows, row_json(path, &path->rows[i]));
     return json_pack("{s:s, s:s, s:s, s:o, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
                      o->scene, "accel", o->accel, "spec", spec, "pixel", pixel_json(o), "kind",
                      rt_ray_kind_name((RtRayKind)r->kind), "org", rt_cli_vector_json(r->org), "dir",
@@ -433,6 +471,7 @@ static RtStatus run(Options *o, RtError *error) {
     if (o->ray) RT_TRY(rt_cli_ray(o->ray, &o->given, error));
     if (o->kind == RT_RAY_SHADOW) o->given.kind = RT_RAY_OCCLUSION;
     RT_TRY(rt_accel_build(&spec, &scene, 0, &accel, error));
+    rt_cli_tell_idle(o->accel, accel);
     RT_TRY(rt_path_available(accel, text, error));
     return (o->depth > 0 ? trace_tree : trace_path)(o, &scene, accel, text, error);
 }
@@ -448,8 +487,12 @@ const RtSyntax rt_trace_syntax = {
         "A row shows what was visited or tested, the interval of t in which the ray is inside its box (if it "
         "has one), whether the ray hit the extent or the object, and the t of the nearest hit so far. An "
         "extent that the ray enters beyond that hit counts as missed. A step is a visit to a node, voxel, "
-        "sample or list entry; docs/guide/tables.md explains the other terms. The rows come from the counted "
-        "kernel itself; raytally checks that they add up to its tally.\n\n"
+        "sample or list entry; docs/guide/tables.md explains the other terms. A csg test shows all intervals "
+        "of t in which the ray is inside the solid, a csg result those of an operation, which joins the last "
+        "two lists (through a plugin they are not seen); the row of the tree follows. A line below the test "
+        "of a polygon shows where its plane is met, in the coordinate plane of the projection, and how many "
+        "edges a half-line from there along the first axis crosses: if odd, it is a hit. The rows come from "
+        "the counted kernel itself; raytally checks that they add up to its tally.\n\n"
         "The upper part of the drawing is a section along the ray and one axis of the scene; it shows boxes "
         "where the ray passes through them, pale if not tested or visited. It is enlarged where objects are "
         "tested; an inset shows the whole path. The bars below show where the ray is in each box, in the "

@@ -127,7 +127,7 @@ static RtColor color_of_cell(const CubeMap *map, int x, int y) {
     int u = x % SIDE, v = y % SIDE;
     if (u == 0 || v == 0 || u == SIDE - 1 || v == SIDE - 1) return RT_GREY; /* of the face */
     if (cell->number == NO_CELL) return unseen;
-    if (cell->cut && x % 2 == 0 && y % 2 == 0) return red;
+    if (cell->cut && x % 6 < 3 && y % 6 < 3) return red;
     return rt_color_scale(rt_scale_position(&map->scale, cell->length));
 }
 

@@ -5,13 +5,15 @@
  * inset at the left shows the whole path. Objects that the ray does not test and leaves that it does not
  * visit are pale.
  *
- * The lower part has a line for each row of the path, with a bar where the ray is in its box. Section and
- * bars share the x axis. */
+ * The lower part has a line for each row of the path, with bars where the ray is in its box, or in the solid
+ * or part of a CSG tree. Section and bars share the x axis. */
 #include "picture/pictures.h"
 
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "picture/section.h"
+
+#include <float.h>
 
 enum { WIDTH = 1000, LEFT = 250, MARGIN = 12, PLOT = WIDTH - LEFT - 20 }; /* of the common x axis, pixels */
 enum { TOP = 64, SECTION = 450, INSET = 160, GAP = 46, ROW = 14, MOST_ROWS = 90, MOST_TICKS = 20 };
@@ -227,9 +229,12 @@ static void draw_ray(const Drawing *d) {
     const double left = (w->x - point_at(d, w, 0).x) / (w->section.scale * d->speed); /* t at the left side */
     const double hit = (double)d->path->hit.t, last = fmin(fmin((double)ray->tmax, d->farthest), hit);
     const RtPoint from = point_at(d, w, fmax((double)ray->tmin, left)), to = point_at(d, w, last);
-    rt_add_line(d->cairo, from, to);
+    const double back =
+        isfinite(hit) ? fmin(5.5 / hypot(to.x - from.x, to.y - from.y), 1) : 0; /* the dot's rim */
+    const RtPoint tip = {to.x + back * (from.x - to.x), to.y + back * (from.y - to.y)};
+    rt_add_line(d->cairo, from, tip);
     rt_paint(d->cairo, (RtStyle){RT_BLACK, 1.5, 0, false});
-    rt_draw_arrow_head(d->cairo, from, to, 12, RT_BLACK);
+    rt_draw_arrow_head(d->cairo, from, tip, d->window == &d->detail ? 12 : 7, RT_BLACK);
     if (ray->kind != RT_RAY_PRIMARY) rt_draw_disc(d->cairo, point_at(d, w, 0), 4, RT_BLACK);
     if (!isfinite(hit)) return;
     rt_draw_disc(d->cairo, to, 5.5, RT_WHITE);
@@ -278,16 +283,20 @@ static void draw_beyond(const Drawing *d, double y, bool right, RtColor color) {
     rt_paint(d->cairo, (RtStyle){color, 0, 1, false});
 }
 
-/* A bar that goes on beyond the axis is open there. */
-static void draw_bar(const Drawing *d, uint32_t i, double y) {
+/* Interval `span` of row `i`. A bar that goes on beyond the axis is open there. */
+static void draw_bar(const Drawing *d, uint32_t i, uint32_t span, double y) {
     const RtPathRow *row = &d->path->rows[i];
-    if (!row->boxed || !(row->enter <= row->leave)) return;
     const double end = LEFT + PLOT, top = y + 3, bottom = y + ROW - 3;
-    double from = x_of(d, row->enter), to = fmax(x_of(d, row->leave), from + 1);
+    double enter, leave;
+    rt_path_row_span(d->path, row, span, &enter, &leave);
+    enter = fmax(enter, (double)d->path->ray.tmin), leave = fmin(leave, (double)FLT_MAX);
+    if (!(enter <= leave)) return;
+    double from = x_of(d, enter), to = fmax(x_of(d, leave), from + 1);
     RtStyle style = {row_color(d->path, i), 1, 0, is_missed(row)};
     if (is_missed(row)) style.color = light;
     if (row->kind == RT_TRACED_OBJECT_TEST) style.color = dark;
     if (row->kind == RT_TRACED_STEP) style.opacity = row->leaf ? 0.7 : 0.25;
+    if (row->listed) style.opacity = row->kind == RT_TRACED_CSG_RESULT ? 0.7 : 0.25;
     if (to < LEFT || from > end) {
         draw_beyond(d, y, from > end, style.color);
         return;
@@ -305,6 +314,10 @@ static void draw_bar(const Drawing *d, uint32_t i, double y) {
     rt_paint(d->cairo, style);
 }
 
+static void draw_bars(const Drawing *d, uint32_t i, double y) {
+    for (uint32_t span = 0; span < rt_path_row_spans(&d->path->rows[i]); span++) draw_bar(d, i, span, y);
+}
+
 static void draw_row(const Drawing *d, uint32_t i, double y) {
     const RtPathRow *row = &d->path->rows[i];
     bool object = row->kind == RT_TRACED_OBJECT_TEST;
@@ -313,10 +326,13 @@ static void draw_row(const Drawing *d, uint32_t i, double y) {
         snprintf(of, sizeof of, " by %s", row->what);
     else if (*row->what)
         snprintf(of, sizeof of, ", %s %u", row->what, row->index);
-    const char *result = !rt_path_row_answers(row) ? "" : row->met ? ": hit" : ": missed";
+    const char *result = row->listed && row->end_count == 0 ? ": empty"
+                         : !rt_path_row_answers(row)        ? ""
+                         : row->met                         ? ": hit"
+                                                            : ": missed";
     rt_draw_text(d->cairo, MARGIN, y + ROW - 3, RT_BLACK, "%u  %s%s%s", i + 1, rt_path_row_name(row), of,
                  result);
-    draw_bar(d, i, y);
+    draw_bars(d, i, y);
     if (object && row->met)
         rt_draw_disc(d->cairo, (RtPoint){x_of(d, (double)row->t), y + ROW / 2.0}, 4, hit_color);
 }
@@ -324,7 +340,7 @@ static void draw_row(const Drawing *d, uint32_t i, double y) {
 static void draw_run(const Drawing *d, uint32_t first, uint32_t run, double y) {
     rt_draw_text(d->cairo, MARGIN, y + ROW - 3, RT_BLACK, "%u to %u  %u object tests: missed", first + 1,
                  first + run, run);
-    for (uint32_t i = first; i < first + run; i++) draw_bar(d, i, y);
+    for (uint32_t i = first; i < first + run; i++) draw_bars(d, i, y);
 }
 
 static void draw_nearest(const Drawing *d, const RtPathRow *row, double y) {

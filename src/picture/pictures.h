@@ -75,7 +75,7 @@ RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame
  *
  * For shadow rays: the cells around light `light` on the six faces of an unfolded cube, coloured by the
  * lengths of their lists on a logarithmic scale. Directions without objects are grey; a truncated list has
- * every fourth pixel red. `marked` is a ray to this light, or NULL: its cell is outlined and circled, and the
+ * red dots. `marked` is a ray to this light, or NULL: its cell is outlined and circled, and the
  * legend shows its number and list length.
  *
  * RT_BAD_INPUT if there is no such light, RT_NOT_AVAILABLE if the light has no cells. */

@@ -51,6 +51,16 @@ static void note_hit(RtPath *path, const RtTraced *event) {
     }
 }
 
+static RtStatus note_crossings(RtPath *path, const RtTraced *event, RtPathRow *row, RtError *error) {
+    row->listed = true;
+    row->first_end = path->end_count;
+    row->end_count = event->crossing_count;
+    RT_TRY(rt_reserve(&path->ends, &path->end_capacity, (uint64_t)path->end_count + row->end_count,
+                      sizeof *path->ends, error));
+    for (uint32_t i = 0; i < row->end_count; i++) path->ends[path->end_count++] = event->crossings[i].t;
+    return RT_OK;
+}
+
 static void record(void *context, const RtTraced *event) {
     Recorder *recorder = context;
     RtPath *path = recorder->path;
@@ -64,6 +74,10 @@ static void record(void *context, const RtTraced *event) {
                                   recorder->error);
     if (recorder->status != RT_OK) return;
     RtPathRow *row = &path->rows[path->count++];
+    if (event->in_tree && row > path->rows && row[-1].kind == RT_TRACED_OBJECT_TEST) {
+        row[0] = row[-1]; /* the object's row, which follows its parts */
+        row--;
+    }
     *row = (RtPathRow){.kind = event->kind,
                        .index = event->index,
                        .leaf = event->leaf,
@@ -75,6 +89,7 @@ static void record(void *context, const RtTraced *event) {
     const bool object = event->kind == RT_TRACED_OBJECT_TEST ||
                         (event->kind == RT_TRACED_REPEAT_AVOIDED && event->index != RT_NO_OBJECT);
     snprintf(row->what, sizeof row->what, "%s", object ? "object" : event->what ? event->what : "");
+    if (event->crossings) recorder->status = note_crossings(path, event, row, recorder->error);
     if (!event->box || !row->boxed) return;
     row->box = *event->box;
     find_span(&path->ray, row);
@@ -152,18 +167,31 @@ RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *
 
 void rt_path_clear(RtPath *path) {
     rt_free(path->rows);
+    rt_free(path->ends);
     path->rows = NULL;
-    path->count = path->capacity = 0;
+    path->ends = NULL;
+    path->count = path->capacity = path->end_count = path->end_capacity = 0;
 }
 
 bool rt_path_row_answers(const RtPathRow *row) {
     return row->kind == RT_TRACED_OBJECT_TEST || (row->kind == RT_TRACED_EXTENT_TEST && *row->what);
 }
 
+uint32_t rt_path_row_spans(const RtPathRow *row) {
+    return row->listed ? row->end_count / 2 : row->boxed && row->enter <= row->leave;
+}
+
+void rt_path_row_span(const RtPath *path, const RtPathRow *row, uint32_t i, double *enter, double *leave) {
+    const float *ends = row->listed ? path->ends + row->first_end + 2 * i : NULL;
+    *enter = ends ? (double)ends[0] : row->enter;
+    *leave = ends ? (double)ends[1] : row->leave;
+}
+
 const char *rt_path_row_name(const RtPathRow *row) {
     static const char *const names[RT_TRACED_KIND_COUNT] = {[RT_TRACED_EXTENT_TEST] = "extent test",
                                                             [RT_TRACED_OBJECT_TEST] = "object test",
                                                             [RT_TRACED_CSG_TEST] = "csg test",
+                                                            [RT_TRACED_CSG_RESULT] = "csg result",
                                                             [RT_TRACED_REPEAT_AVOIDED] = "repeat avoided",
                                                             [RT_TRACED_PASSED_ON] = "passed on"};
     if (row->kind != RT_TRACED_STEP) return names[row->kind];

@@ -7,7 +7,8 @@
 #include "core/base/observe.h"
 #include "core/shape/shape.h"
 
-/* A row of the path. An object test and its hit are one row. */
+/* A row of the path. An object test and its hit are one row; that of a CSG tree follows the rows of its
+ * parts. */
 typedef struct RtPathRow {
     RtTracedKind kind;      /* never RT_TRACED_OBJECT_HIT */
     char what[RT_MAX_NAME]; /* as in RtTraced; "object" for object tests; "": nothing */
@@ -21,7 +22,9 @@ typedef struct RtPathRow {
     RtBox box;
     RtBall ball;
     double enter, leave; /* t, within tmin..tmax */
-    float nearest;       /* t of the nearest hit so far, including this row; INFINITY if there is none */
+    bool listed;         /* csg test or result: its intervals are known, path->ends[first_end..+end_count) */
+    uint32_t first_end, end_count;
+    float nearest; /* t of the nearest hit so far, including this row; INFINITY if there is none */
 } RtPathRow;
 
 /* Owned; free with rt_path_clear. */
@@ -33,6 +36,8 @@ typedef struct RtPath {
     RtTally tally;        /* sums over the rows, except `rays` and `hits`, from the kernel */
     RtPathRow *rows;
     uint32_t count, capacity;
+    float *ends; /* t where the ray's line enters and leaves, alternately, a solid or a part of a CSG tree */
+    uint32_t end_count, end_capacity;
 } RtPath;
 
 /* RT_OK, or RT_BAD_INPUT if paths through the accelerator of `spec` cannot be traced: a plugin must be exact
@@ -48,6 +53,11 @@ void rt_path_clear(RtPath *path);
 
 /* Whether `met` is known: not of other events, nor of an extent test that a plugin did not show. */
 bool rt_path_row_answers(const RtPathRow *row);
+
+/* The number of intervals of t in which the ray is inside, and the ends of interval `i`: of a csg test or
+ * result those of the solid or part, unclipped; else that of the box, if the ray meets it. */
+uint32_t rt_path_row_spans(const RtPathRow *row);
+void rt_path_row_span(const RtPath *path, const RtPathRow *row, uint32_t i, double *enter, double *leave);
 
 /* "step", "leaf", "extent test", ... */
 const char *rt_path_row_name(const RtPathRow *row);

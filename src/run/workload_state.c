@@ -221,6 +221,12 @@ static RtStatus keep_result(const Builds *builds, RtError *error) {
     result->seconds = estimate_of(builds, &result->builds);
     result->threads = (uint32_t)rt_thread_count(build_threads(workload));
     rt_spec_format(&rt_workload_setup(workload, builds->candidate)->parsed, result->spec);
+    for (const RtAccel *layer = accel; layer; layer = layer->below) {
+        if (layer->idle)
+            rt_notify(&workload->options->observer, "%s on %s: %s passes on every ray: %s",
+                      rt_candidate_label(workload->experiment, builds->candidate),
+                      workload->experiment->workloads[workload->index].label, layer->ops->name, layer->idle);
+    }
     rt_accel_describe(accel, &result->structure);
     if (workload->distributions) RT_TRY(distribute_leaves(accel, result, error));
     return rt_workload_tell(workload, RT_EVENT_BUILD, builds->candidate, RT_RAY_PRIMARY, error);

@@ -67,6 +67,51 @@ RT_TEST(every_accelerator_says_the_same_of_where_a_ray_ends) {
     assert_said(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel item+kd"), 0, OUT ".txt", line);
 }
 
+RT_TEST(a_csg_tree_shows_intervals_in_words_and_as_json_and_says_how_many_there_are) {
+    const char *ray = RT_SOURCE_DIR "/scenes/csg-lecture.yaml --ray -3,0,0,1,0,0 --accel brute";
+    assert_said(trace(ray), 0, OUT ".txt", "csg result      difference 1                      2        2.4");
+    assert_true(says(OUT ".txt", "  and                           3.6          4\n"));
+    json_auto_t *path = path_of(ray);
+    assert_int_equal(rows_of(path, "csg test"), count_of(path, "csg_tests"));
+    size_t i;
+    json_t *row, *intervals = NULL;
+    json_array_foreach(json_object_get(path, "rows"), i, row) {
+        if (strcmp(json_string_value(json_object_get(row, "event")), "csg result") == 0)
+            intervals = json_object_get(row, "intervals");
+    }
+    assert_int_equal(json_array_size(intervals), 2);
+    assert_true(json_number_value(json_array_get(json_array_get(intervals, 1), 1)) == 4);
+}
+
+RT_TEST(a_polygon_shows_its_projection_and_the_edges_that_are_crossed) {
+    FILE *file = fopen(OUT ".yaml", "w");
+    assert_non_null(file);
+    fputs("objects:\n  - polygon: {vertices: [[0, 0, 4], [6, 0, 4], [6, 4, 2], [4, 4, 2], [4, 2, 3], [2, 2, "
+          "3], "
+          "[2, 4, 2], [0, 4, 2]]}\n",
+          file);
+    fclose(file);
+    assert_int_equal(trace("'" OUT ".yaml' --ray 1,3,0,0,0,1 --accel brute"), 0);
+    assert_true(says(OUT ".txt", "its plane at t = 2.5; projected to x, y: (1, 3), 3 edges crossed"));
+    assert_int_equal(trace("'" OUT ".yaml' --ray 3,3,0,0,0,1 --accel brute"), 0);
+    assert_true(says(OUT ".txt", "(3, 3), 2 edges crossed") && says(OUT ".txt", "it hits nothing"));
+    assert_int_equal(trace("'" OUT ".yaml' --ray 9,3,0,0,0,1 --accel brute"), 0);
+    assert_false(says(OUT ".txt", "crossed")); /* beside its box */
+}
+
+RT_TEST(an_overlay_that_passes_on_every_ray_says_so_and_why) {
+    const char *why = "light passes on every ray: ";
+    assert_said(trace("balls:size=1 --size 64x64 --pixel 32,50 --accel light+bvh"), 0, OUT ".err", why);
+    assert_said(
+        raytally_to("2> '" OUT ".err'", "render balls:size=1 --size 8x8 --accel light+bvh -o '" OUT ".png'"),
+        0, OUT ".err", why);
+    assert_said(raytally_to("> '" OUT ".txt' 2> '" OUT ".err'",
+                            "bench balls:size=1 --size 8x8 --accel light+bvh --count-only"),
+                0, OUT ".err", why);
+    assert_int_equal(trace("balls:size=1 --size 64x64 --pixel 32,50 --accel light:cells=8+bvh"), 0);
+    assert_false(says(OUT ".err", why));
+}
+
 RT_TEST(a_shadow_ray_is_followed_through_overlays) {
     assert_said(trace("balls:size=2 --size 64x64 --pixel 32,50 --rays shadow --accel light:cells=16+bvh"), 0,
                 OUT ".txt", "the shadow ray of pixel 32,50");

@@ -253,6 +253,9 @@ try {
   await open('deep.html');
   const legend = await browser.run("return document.querySelector('#legend').textContent;");
   holds(/no boxes of kd below level \d+: deeper leaves are missing/.test(legend), `leaves that are left out are told: ${legend}`);
+  const atFirst = Number(legend.match(/kd (\d+)/)[1]);
+  holds(atFirst > 7 && atFirst <= 400 && await browser.run("return document.querySelector('#boxes').value === 'all' && Number(document.querySelector('#to-level').value) < Number(document.querySelector('#to-level').max);"),
+    `a structure of many leaves is shown by its upper levels at first: ${legend}`);
   await open('limited.html');
   holds(statSync('limited.html').size < 4e6, `paths take the room that they are given: ${statSync('limited.html').size} bytes`);
   holds(/of one pixel in (\d+) x \1/.test(await browser.run("return document.querySelector('#about').textContent;")), 'the page says which pixels it has');

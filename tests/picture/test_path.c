@@ -115,6 +115,51 @@ RT_TEST(voxels_are_met_in_order_each_where_the_one_before_is_left) {
     assert_int_equal(voxels, 6);
 }
 
+/* The row of a CSG test or result has these ends. */
+static void assert_ends(const RtPath *path, const RtPathRow *row, const char *what, uint32_t count,
+                        const float *ends) {
+    assert_string_equal(row->what, what);
+    assert_true(row->listed);
+    assert_int_equal(row->end_count, count);
+    for (uint32_t i = 0; i < count; i++) assert_true(fabsf(path->ends[row->first_end + i] - ends[i]) < 1e-6f);
+}
+
+RT_TEST(a_path_through_a_csg_tree_has_the_intervals_of_its_solids_and_operations_and_then_its_hit) {
+    /* (block & ball) - bore | ring, whose ring lies below the ray. */
+    OWNED_SCENE scene = open_scene(RT_SOURCE_DIR "/scenes/csg-lecture.yaml");
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "brute");
+    OWNED(rt_path_clear) RtPath path = path_at(accel, 0);
+    static const char *const names[] = {"solid", "solid", "intersection", "solid", "difference", "union"};
+    static const float ends[6][4] = {{2, 4},       {1.65f, 4.35f},     {2, 4},
+                                     {2.4f, 3.6f}, {2, 2.4f, 3.6f, 4}, {2, 2.4f, 3.6f, 4}};
+    uint32_t lists = 0, at = 1; /* row 0: the table */
+    for (; path.rows[at].kind != RT_TRACED_OBJECT_TEST; at++) {
+        const RtPathRow *row = &path.rows[at];
+        if (row->kind == RT_TRACED_EXTENT_TEST) continue;
+        assert_int_equal(row->kind, *names[lists] == 's' ? RT_TRACED_CSG_TEST : RT_TRACED_CSG_RESULT);
+        assert_ends(&path, row, names[lists], lists < 4 ? 2 : 4, ends[lists]);
+        lists++;
+    }
+    assert_int_equal(lists, 6);
+    assert_true(path.rows[at].index == 0 && path.rows[at].met && path.rows[at].t == 2);
+    assert_int_equal(path.count, at + 1);
+}
+
+RT_TEST(operations_that_need_not_be_carried_out_have_empty_results) {
+    OWNED_SCENE scene = open_scene(RT_SOURCE_DIR "/scenes/csg-lecture.yaml");
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "brute");
+    RtPath path;
+    RtRay ray = {.org = {{-3, 0.98f, 0.95f}}, .dir = {{1, 0, 0}}, .tmax = INFINITY}; /* beside the ball */
+    assert_ok(rt_path_trace(&path, accel, &ray, error));
+    uint32_t empty = 0;
+    for (uint32_t i = 0; i < path.count; i++)
+        empty +=
+            path.rows[i].kind == RT_TRACED_CSG_RESULT && path.rows[i].listed && path.rows[i].end_count == 0;
+    assert_int_equal(empty, 3);
+    assert_int_equal(path.hit.object, RT_NO_OBJECT);
+    rt_path_clear(&path);
+}
+
 RT_TEST(nobody_looks_on_after_a_path) {
     PATH_ALONG_THE_ROW("bvh", 0);
     assert_true(path.hit.object != RT_NO_OBJECT);

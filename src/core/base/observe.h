@@ -18,7 +18,8 @@ typedef enum RtTracedKind {
     RT_TRACED_EXTENT_TEST,    /* `met`: the ray meets the extent where something may still be found */
     RT_TRACED_OBJECT_TEST,    /* the hit function of object `index` is called */
     RT_TRACED_OBJECT_HIT,     /* it hit, at `t`; other events of the same test may come in between */
-    RT_TRACED_CSG_TEST,       /* a leaf solid of the CSG tree under test */
+    RT_TRACED_CSG_TEST,       /* a leaf solid of the CSG tree under test; `crossings` with it */
+    RT_TRACED_CSG_RESULT,     /* `crossings` with the result of an operation of that tree; not counted */
     RT_TRACED_REPEAT_AVOIDED, /* a mailbox skipped object `index` */
     RT_TRACED_PASSED_ON,      /* an overlay passes the ray to the accelerator below */
     RT_TRACED_KIND_COUNT
@@ -31,7 +32,11 @@ typedef struct RtTraced {
     uint32_t index;
     const RtBox *box; /* its box or NULL; valid during the call */
     const struct RtBall
-        *ball;        /* the sphere of an extent test (core/shape/shape.h) or NULL; valid during the call */
+        *ball; /* the sphere of an extent test (core/shape/shape.h) or NULL; valid during the call */
+    const struct RtCrossing *crossings; /* of the ray's line (core/shape/solid.h), ascending, alternately in
+                                         * and out; or NULL; valid during the call */
+    uint32_t crossing_count;
+    bool in_tree;     /* belongs to the test of the CSG tree whose event was the last without this mark */
     bool leaf, empty; /* of a step: counted in leaf_steps, in empty_steps */
     bool met;
     float t;

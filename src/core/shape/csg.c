@@ -76,6 +76,20 @@ static void apply(Machine *m, RtCsgOp op, bool reversed) {
 
 /* ---- running a program ---- */
 
+/* Reports the list on top of the stack as the result of the operation that ends before instruction `end`.
+ * Operations are numbered in the order of their ends. */
+static RT_COLD void show_result(const Machine *m, const RtCsgInstruction *program, uint32_t end) {
+    static const char *const names[] = {"union", "intersection", "difference"};
+    const uint32_t start = m->starts[m->depth - 1];
+    RtTraced event = {.kind = RT_TRACED_CSG_RESULT,
+                      .what = names[program[end - 1].operand],
+                      .crossings = m->crossings + start,
+                      .crossing_count = m->starts[m->depth] - start,
+                      .in_tree = true};
+    for (uint32_t i = 0; i + 1 < end; i++) event.index += program[i].code == RT_CSG_APPLY;
+    rt_observe(&event);
+}
+
 INLINE void push_solid(Machine *m, const RtSolidSet *set, uint32_t index, const RtSolidRay *ray,
                        RtTally *tally) {
     float near = -INFINITY, far = INFINITY;
@@ -83,16 +97,17 @@ INLINE void push_solid(Machine *m, const RtSolidSet *set, uint32_t index, const 
     rt_box_cut(&set->solids[index].box, &ray->thick, &near, &far);
     bool met = near <= far && near <= ray->thick.tmax && far >= ray->thick.tmin;
     RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "solid", .index = index,
-               .box = &set->solids[index].box, .met = met);
+               .box = &set->solids[index].box, .met = met, .in_tree = true);
     if (!met) {
         push(m, 0);
         return;
     }
     assert(has_room(m, rt_solid_most_crossings(&set->solids[index])));
     RT_COUNT(tally, csg_tests, 1);
-    RT_OBSERVE(tally, .kind = RT_TRACED_CSG_TEST, .what = "solid", .index = index,
-               .box = &set->solids[index].box);
-    push(m, rt_solid_crossings(set, index, ray, near, far, m->crossings + m->starts[m->depth]));
+    RtCrossing *list = m->crossings + m->starts[m->depth];
+    push(m, rt_solid_crossings(set, index, ray, near, far, list));
+    RT_OBSERVE(tally, .kind = RT_TRACED_CSG_TEST, .what = "solid", .index = index, .crossings = list,
+               .crossing_count = m->starts[m->depth] - m->starts[m->depth - 1], .in_tree = true);
 }
 
 /* Runs the program; it leaves one list on the stack. */
@@ -113,17 +128,23 @@ INLINE void run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, const 
             const RtBox *box = &forest->boxes[instruction.operand];
             bool met = rt_box_hit(box, &ray->thick, ray->thick.tmax, &enter);
             RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "solids", .index = instruction.operand,
-                       .box = box, .met = met);
+                       .box = box, .met = met, .in_tree = true);
             if (met) break;
             push(m, 0);
             i = instruction.to - 1;
+            if (RT_OBSERVED(tally)) show_result(m, program, i + 1);
             break;
         case RT_CSG_PUSH: push_solid(m, &forest->set, instruction.operand, ray, tally); break;
         case RT_CSG_SKIP_IF_EMPTY:
             assert(m->depth > 0);
-            if (m->starts[m->depth - 1] == m->starts[m->depth]) i = instruction.to - 1;
+            if (m->starts[m->depth - 1] < m->starts[m->depth]) break;
+            i = instruction.to - 1;
+            if (RT_OBSERVED(tally)) show_result(m, program, i + 1);
             break;
-        case RT_CSG_APPLY: apply(m, (RtCsgOp)instruction.operand, instruction.reversed); break;
+        case RT_CSG_APPLY:
+            apply(m, (RtCsgOp)instruction.operand, instruction.reversed);
+            if (RT_OBSERVED(tally)) show_result(m, program, i + 1);
+            break;
         }
     }
 }

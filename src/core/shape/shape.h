@@ -86,25 +86,31 @@ typedef struct RtPolygon {
 
 /* Below, `vertices` are the polygon's own: the geometry's array from `first` on. */
 
-/* Even-odd rule in the projection plane; a point on an edge is inside. */
-static inline bool rt_polygon_inside(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d point) {
+/* How many edges a half-line from the point along u crosses in the projection plane; 1 for a point on an
+ * edge. */
+static inline uint32_t rt_polygon_crossings(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d point) {
     double pu = point.at[polygon->u], pv = point.at[polygon->v];
     const float *last = vertices[polygon->count - 1].at;
     double au = (double)last[polygon->u], av = (double)last[polygon->v];
-    bool inside = false;
+    uint32_t crossings = 0;
     for (uint32_t i = 0; i < polygon->count; i++) {
         const float *vertex = vertices[i].at;
         double bu = (double)vertex[polygon->u], bv = (double)vertex[polygon->v];
         if ((av >= pv || bv >= pv) && (av <= pv || bv <= pv)) {
             double side = (bu - au) * (pv - av) - (pu - au) * (bv - av);
-            if (side == 0 && (au >= pu || bu >= pu) && (au <= pu || bu <= pu)) return true;
+            if (side == 0 && (au >= pu || bu >= pu) && (au <= pu || bu <= pu)) return 1;
             bool crosses = (av > pv) != (bv > pv);
-            if (crosses && (bv > av ? side > 0 : side < 0)) inside = !inside;
+            crossings += crosses && (bv > av ? side > 0 : side < 0);
         }
         au = bu;
         av = bv;
     }
-    return inside;
+    return crossings;
+}
+
+/* Even-odd rule; a point on an edge is inside. */
+static inline bool rt_polygon_inside(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d point) {
+    return rt_polygon_crossings(polygon, vertices, point) % 2;
 }
 
 /* The t in [tmin, tmax] at which the ray meets the polygon; a ray in its plane misses it. */

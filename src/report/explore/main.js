@@ -147,6 +147,16 @@ function showBoxes() {
     (axis < 0 ? '.' : `, cut by ${'xyz'[axis]} = ${number(position)}.`) + missing.join('');
 }
 
+// The last level shown at first: where leaves would hide each other, upper levels with inner nodes give an overview.
+function firstLevel() {
+  const MOST = 400, LEAST_LEVEL = 2;
+  const count = (belongs) => Math.max(0, ...data.accelerators.map(({ boxList, leastList }) => boxList.filter((box) => belongs(box, leastList)).length));
+  let level = deepest;
+  if (count(({ list }, least) => list >= least) < MOST) return level;
+  while (level > LEAST_LEVEL && count(({ depth }) => depth <= level) > MOST) level--;
+  return level;
+}
+
 function connectSpace() {
   if (!space) {
     byId('shown').hidden = true;
@@ -154,7 +164,8 @@ function connectSpace() {
     byId('space').removeAttribute('role');
     return;
   }
-  byId('to-level').value = deepest;
+  byId('to-level').value = firstLevel();
+  if (Number(byId('to-level').value) < deepest) byId('boxes').value = 'all';
   for (const id of ['from-level', 'to-level']) byId(id).max = deepest;
   byId('shown').addEventListener('submit', (event) => event.preventDefault());
   byId('shown').addEventListener('input', (event) => event.target.id === 'objects' ? space.objects(event.target.value) : showBoxes());
