@@ -31,8 +31,8 @@ static RtVec3 textured_color(const RtScene *scene, const RtMaterial *m, uint32_t
     } else if (corners) {
         const RtVec3d weights = rt_triangle_weights(&g->triangles[index], point);
         for (int i = 0; i < 3; i++) {
-            u += weights.at[i] * (double)corners->at[i][0];
-            v += weights.at[i] * (double)corners->at[i][1];
+            u += weights.at[i] * (double)corners->at[i].u;
+            v += weights.at[i] * (double)corners->at[i].v;
         }
     } else {
         const RtVec3d p = rt_subd(point, rt_widen(m->texture.origin));

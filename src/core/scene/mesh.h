@@ -66,10 +66,6 @@ typedef struct RtMeshCorner {
     uint32_t uv;     /* likewise */
 } RtMeshCorner;
 
-typedef struct RtMeshUv {
-    float u, v;
-} RtMeshUv;
-
 typedef struct RtMeshReader {
     RtScanner text; /* the whole file, with a 0 behind it; binary formats use path, at, end and error */
     const char *given_back; /* whole pages of the text up to here are not read again; NULL: all is kept */
@@ -82,7 +78,7 @@ typedef struct RtMeshReader {
     uint32_t uv_count, uv_capacity;
     RtVec3 *vertices;      /* [vertex_count] transformed */
     RtVec3 *normals;       /* [normal_count] likewise */
-    RtMeshUv *uvs;         /* [uv_count] texture coordinates */
+    RtUv *uvs;             /* [uv_count] texture coordinates */
     RtMeshCorner *corners; /* [corner_count] of the polygon being read */
     uint32_t face_count;   /* polygons added */
 } RtMeshReader;
@@ -109,7 +105,7 @@ RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal);
 
 /* Adds texture coordinates, if the mesh is textured. Those that are not finite, with a warning, are ignored where
  * they are used. */
-RtStatus rt_mesh_add_uv(RtMeshReader *r, RtMeshUv uv);
+RtStatus rt_mesh_add_uv(RtMeshReader *r, RtUv uv);
 
 /* Adds a corner; its indices must be valid. Rejects a vertex that is not finite. */
 RtStatus rt_mesh_add_corner(RtMeshReader *r, RtMeshCorner corner);

@@ -342,7 +342,7 @@ static RtStatus take_element(File *file, const Element *element) {
     if ((element->uses & normal) == normal)
         RT_TRY(rt_mesh_add_normal(file->mesh, rt_narrow(rt_vec3d(at[NX], at[NY], at[NZ]))));
     if ((element->uses & uv) == uv)
-        RT_TRY(rt_mesh_add_uv(file->mesh, (RtMeshUv){(float)at[U], (float)at[V]}));
+        RT_TRY(rt_mesh_add_uv(file->mesh, (RtUv){(float)at[U], (float)at[V]}));
     return rt_mesh_add_vertex(file->mesh, rt_vec3d(at[X], at[Y], at[Z]));
 }
 

@@ -27,12 +27,13 @@ static RtStatus end_material(Library *library) {
     RtMeshReader *r = library->mesh;
     RtTexture *texture = &library->material.texture;
     uint32_t index;
+    RtError why;
     if (!texture->texels) return RT_OK;
-    const RtStatus status = rt_scene_add_material(r->scene, &library->material, &index, r->text.error);
+    const RtStatus status = rt_scene_add_material(r->scene, &library->material, &index, &why);
     rt_texels_release(texture->texels);
     *texture = (RtTexture){0};
-    r->textured = true;
-    return status;
+    r->textured = r->textured || status == RT_OK;
+    return excuse(r, status, &why);
 }
 
 /* The file is named by all of `text`, or after options by its last word; in Windows with backslashes. */
@@ -71,9 +72,12 @@ static RtStatus read_line(Library *library, const char *line, const RtMaterial *
 
 static RtStatus read_lines(Library *library, char *text, const RtMaterial *plain) {
     char *rest;
+    for (char *at = text; *at; at++) {
+        if (*at == '\t') *at = ' ';
+    }
     for (char *line = strtok_r(text, "\r\n", &rest); line; line = strtok_r(NULL, "\r\n", &rest)) {
-        size_t length = strlen(line += strspn(line, " \t"));
-        while (length > 0 && strchr(" \t", line[length - 1])) line[--length] = 0;
+        size_t length = strlen(line += strspn(line, " "));
+        while (length > 0 && line[length - 1] == ' ') line[--length] = 0;
         RT_TRY(read_line(library, line, plain));
     }
     return end_material(library);
@@ -87,7 +91,7 @@ RtStatus rt_mesh_read_mtl(RtMeshReader *r, RtWord name, const RtMaterial *plain)
     snprintf(file, sizeof file, "%.*s", (int)(name.length < RT_MAX_PATH ? name.length : RT_MAX_PATH), name.text);
     rt_path_folder(r->text.path, folder);
     RtStatus status = rt_path_join(folder, file, path, &why);
-    if (status == RT_OK && !rt_file_exists(path)) return RT_OK;
+    if (status == RT_OK && (!*file || !rt_file_exists(path))) return RT_OK;
     if (status == RT_OK) status = rt_file_read_text(path, MOST_BYTES, &text, &size, &why);
     if (status != RT_OK) return excuse(r, status, &why);
     rt_path_folder(path, library.folder);

@@ -59,12 +59,12 @@ static RtStatus read_normal(RtMeshReader *r) {
 }
 
 static RtStatus read_uv(RtMeshReader *r) {
-    float uv[2] = {NAN, NAN};
+    RtUv uv = {NAN, 0};
     RtWord word;
-    for (int i = 0; i < 2 && rt_mesh_more(r, &word); i++)
-        if (!rt_scan_float(word, &uv[i])) uv[i] = NAN;
+    if (!rt_mesh_more(r, &word) || !rt_scan_float(word, &uv.u)) uv.u = NAN;
+    if (rt_mesh_more(r, &word) && !rt_scan_float(word, &uv.v)) uv.v = NAN;
     rt_scan_skip_line(&r->text);
-    return rt_mesh_add_uv(r, (RtMeshUv){uv[0], uv[1]});
+    return rt_mesh_add_uv(r, uv);
 }
 
 static RtStatus read_listed(Obj *obj, List list) {
@@ -206,7 +206,10 @@ static RtStatus read_statement(Obj *obj, RtWord word) {
     if (rt_scan_is(word, "vt")) return read_listed(obj, TEXTURE);
     if (rt_scan_is(word, "f") || rt_scan_is(word, "fo")) return read_face(obj);
     if (rt_scan_is(word, "mtllib")) return read_library(obj);
-    if (rt_scan_is(word, "usemtl")) return use_material(obj), RT_OK;
+    if (rt_scan_is(word, "usemtl")) {
+        use_material(obj);
+        return RT_OK;
+    }
     if (is_among(word, lines))
         RT_TRY(rt_mesh_warn(r, "points and lines are left out"));
     else if (is_among(word, curved))

@@ -38,7 +38,7 @@ RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal) {
                      r->text.error);
 }
 
-RtStatus rt_mesh_add_uv(RtMeshReader *r, RtMeshUv uv) {
+RtStatus rt_mesh_add_uv(RtMeshReader *r, RtUv uv) {
     if (!r->textured) return RT_OK;
     if (!isfinite(uv.u) || !isfinite(uv.v))
         RT_TRY(rt_mesh_warn(r, "texture coordinates are not finite: their triangles go without"));
@@ -76,13 +76,11 @@ static RtStatus add_triangle(RtMeshReader *r, const RtMeshCorner corners[3]) {
     RtVec3 vertices[3], normals[3];
     const bool mirror = rt_mesh_is_mirror(&r->transform);
     bool has_normals = true;
-    float uv[3][2];
+    RtUv uv[3];
     for (int i = 0; i < 3; i++) {
         const RtMeshCorner corner = corners[mirror ? 2 - i : i];
-        const bool has_uv = corner.uv < r->uv_count;
         vertices[i] = r->vertices[corner.vertex];
-        uv[i][0] = has_uv ? r->uvs[corner.uv].u : NAN;
-        uv[i][1] = has_uv ? r->uvs[corner.uv].v : NAN;
+        uv[i] = corner.uv < r->uv_count ? r->uvs[corner.uv] : (RtUv){NAN, NAN};
         has_normals = has_normals && corner.normal != RT_MESH_NONE;
         if (!has_normals) continue;
         normals[i] = r->normals[corner.normal];
@@ -90,7 +88,7 @@ static RtStatus add_triangle(RtMeshReader *r, const RtMeshCorner corners[3]) {
     }
     const RtStatus status =
         rt_scene_add_triangle(r->scene, r->material, vertices, has_normals ? normals : NULL, r->text.error);
-    if (status == RT_OK) return rt_scene_set_triangle_texture(r->scene, (const float(*)[2])uv, r->text.error);
+    if (status == RT_OK) return rt_scene_set_triangle_texture(r->scene, uv, r->text.error);
     char face[48];
     snprintf(face, sizeof face, "face %u (counted from 0): ", r->face_count);
     return rt_scan_place(&r->text, status, r->text.last, face);

@@ -124,12 +124,12 @@ RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float
     return rt_geometry_add_cone(&scene->geometry, base, base_radius, apex, apex_radius, error);
 }
 
-RtStatus rt_scene_set_triangle_texture(RtScene *scene, const float at[3][2], RtError *error) {
+RtStatus rt_scene_set_triangle_texture(RtScene *scene, const RtUv at[3], RtError *error) {
     const uint32_t material = scene->material_of[scene->geometry.object_count - 1];
     RtTriangleTexture texture = {.triangle = scene->geometry.triangle_count - 1};
     bool finite = true;
     memcpy(texture.at, at, sizeof texture.at);
-    for (int i = 0; i < 6; i++) finite = finite && isfinite(at[i / 2][i % 2]);
+    for (int i = 0; i < 3; i++) finite = finite && isfinite(at[i].u) && isfinite(at[i].v);
     if (scene->materials[material].texture.kind == RT_TEXTURE_NONE || !finite) return RT_OK;
     return rt_append(&scene->triangle_textures, &scene->triangle_texture_count,
                      &scene->triangle_texture_capacity, &texture, sizeof texture, error);

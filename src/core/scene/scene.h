@@ -37,10 +37,15 @@ typedef struct RtLight {
     RtVec3 intensity; /* linear rgb */
 } RtLight;
 
-/* Texture coordinates of a triangle: (u, v) of each vertex. */
+/* Texture coordinates. */
+typedef struct RtUv {
+    float u, v;
+} RtUv;
+
+/* Those of the vertices of a triangle. */
 typedef struct RtTriangleTexture {
     uint32_t triangle; /* its index in geometry.triangles */
-    float at[3][2];
+    RtUv at[3];
 } RtTriangleTexture;
 
 typedef struct RtScene {
@@ -90,7 +95,7 @@ RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float
                            float apex_radius, RtError *error);
 
 /* Sets the texture coordinates of the triangle added last, if its material has a texture and they are finite. */
-RtStatus rt_scene_set_triangle_texture(RtScene *scene, const float at[3][2], RtError *error);
+RtStatus rt_scene_set_triangle_texture(RtScene *scene, const RtUv at[3], RtError *error);
 
 /* The texture coordinates of triangle `index` of the geometry; NULL if it has none. */
 const RtTriangleTexture *rt_scene_triangle_texture(const RtScene *scene, uint32_t index);

@@ -540,12 +540,12 @@ static RtStatus read_points(const RtYaml *y, const RtYamlNode *list, bool normal
 }
 
 /* Texture coordinates. */
-static RtStatus read_corners(const RtYaml *y, const RtYamlNode *list, float at[3][2]) {
+static RtStatus read_corners(const RtYaml *y, const RtYamlNode *list, RtUv at[3]) {
     RT_TRY(rt_yaml_list(y, list, NULL, 3, 3, "pairs of numbers, as in [0, 1]"));
     for (const RtYamlNode *p = rt_yaml_first(list); p != rt_yaml_end(list); p += p->size, at++) {
         RT_TRY(rt_yaml_list(y, p, NULL, 2, 2, "numbers, as in [0, 1]"));
-        RT_TRY(rt_yaml_float(y, p + 1, NULL, &at[0][0]));
-        RT_TRY(rt_yaml_float(y, p + 2, NULL, &at[0][1]));
+        RT_TRY(rt_yaml_float(y, p + 1, NULL, &at->u));
+        RT_TRY(rt_yaml_float(y, p + 2, NULL, &at->v));
     }
     return RT_OK;
 }
@@ -553,7 +553,7 @@ static RtStatus read_corners(const RtYaml *y, const RtYamlNode *list, float at[3
 static RtStatus object_triangle(Reader *r, const RtYamlNode *n, uint32_t material) {
     const RtYaml *y = &r->yaml;
     RtVec3 v[3] = {{0}}, at_vertices[3] = {{0}};
-    float corners[3][2] = {{0}};
+    RtUv corners[3] = {{0}};
     RT_TRY(rt_yaml_keys(y, n, "vertices normals? uv? material?"));
     const RtYamlNode *normals = rt_yaml_get(y, n, "normals"), *uv = rt_yaml_get(y, n, "uv");
     RT_TRY(read_points(y, rt_yaml_get(y, n, "vertices"), false, v));
