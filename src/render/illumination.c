@@ -47,8 +47,8 @@ RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit, RtCrossi
     const RtGeometry *g = &scene->geometry;
     RtVec3d point = rt_ray_point(ray, hit.t);
     RtNormals normals = rt_object_normals(g, hit.object, ray, hit.t, crossings);
-    const RtMaterial *material = &scene->materials[normals.solid == RT_NO_SOLID
-                                                       ? scene->material_of[hit.object]
+    const RtMaterial *material =
+        &scene->materials[normals.solid == RT_NO_SOLID ? scene->material_of[hit.object]
                                                        : g->forest.set.solids[normals.solid].material];
     RtVec3d dir = rt_widen(ray->dir);
     bool entering = rt_dotd(dir, normals.geometric) < 0;

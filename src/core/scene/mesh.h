@@ -4,8 +4,8 @@
  * Triangles come in the order of the file; of glTF, nodes depth first, then the primitives of a mesh.
  * Polygons are split into triangles; points and lines are left out. Nothing is merged, removed or invented:
  * triangles without area stay (they are never hit), and only the file's own vertex normals are used. Texture
- * coordinates (OBJ, PLY, glTF) are kept where the material has a texture. Materials, cameras and lights of the
- * file are ignored, except images in materials of OBJ (mesh_mtl.c).
+ * coordinates (OBJ, PLY, glTF) are kept where the material has a texture. Materials, cameras and lights of
+ * the file are ignored, except images in materials of OBJ (mesh_mtl.c).
  *
  * What is unused or redundant, or has one sensible reading, is read whatever it is like; what is left out or
  * guessed, and changes the picture or may be damage, is a warning of the scene (core/base/warnings.h). A file
@@ -30,9 +30,9 @@
 enum { RT_MESH_WRITTEN = 4 };
 const char *rt_mesh_extension(size_t i);
 
-/* Adds the triangles of `path` to the scene with `material` (OBJ: or its own, with images), moved by `transform` (NULL: in place). After
- * a failure some may remain, and the scene must be cleared. Rejects damaged files, files without triangles,
- * and faces with vertices that are not finite. */
+/* Adds the triangles of `path` to the scene with `material` (OBJ: or its own, with images), moved by
+ * `transform` (NULL: in place). After a failure some may remain, and the scene must be cleared. Rejects
+ * damaged files, files without triangles, and faces with vertices that are not finite. */
 RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
                         RtError *error);
 
@@ -42,8 +42,8 @@ RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error);
 /* Writes the triangles of a scene in format `i`, without sharing vertices. Coordinates
  * survive bit for bit in ply, stl and glb, and within the rounding of the reader in obj. stl has facet
  * normals only. If only some triangles have vertex normals, ply and glb use the geometric normal for the
- * others. Rejects scenes with other shapes and names formats that support them. Materials, texture coordinates,
- * lights and camera are not written. */
+ * others. Rejects scenes with other shapes and names formats that support them. Materials, texture
+ * coordinates, lights and camera are not written. */
 RtStatus rt_mesh_save(const RtScene *scene, size_t i, FILE *file, RtError *error);
 
 /* ---- what the readers share: mesh_reader.c ----
@@ -103,8 +103,8 @@ RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3d place);
  * used. */
 RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal);
 
-/* Adds texture coordinates, if the mesh is textured. Those that are not finite, with a warning, are ignored where
- * they are used. */
+/* Adds texture coordinates, if the mesh is textured. Those that are not finite, with a warning, are ignored
+ * where they are used. */
 RtStatus rt_mesh_add_uv(RtMeshReader *r, RtUv uv);
 
 /* Adds a corner; its indices must be valid. Rejects a vertex that is not finite. */

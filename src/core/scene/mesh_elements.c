@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* PLY (Greg Turk): a header that declares elements and their properties, then the elements as text or binary.
- * Read are x y z, nx ny nz and, if the material has a texture, s t (or u v) of the element `vertex`, the list vertex_indices of `face`, and that of
- * `tristrips`, in which -1 ends a strip; everything else is skipped, but must be there. Faces that stand
- * before the vertices are read after them. A line of text holds one element.
+ * Read are x y z, nx ny nz and, if the material has a texture, s t (or u v) of the element `vertex`, the list
+ * vertex_indices of `face`, and that of `tristrips`, in which -1 ends a strip; everything else is skipped,
+ * but must be there. Faces that stand before the vertices are read after them. A line of text holds one
+ * element.
  *
  * OFF, of Geomview, is the same with another header: the numbers of vertices, polygons and edges. Letters
  * before its keyword say what follows the coordinates of a vertex: N a normal, C a colour, ST texture
@@ -341,8 +342,7 @@ static RtStatus take_element(File *file, const Element *element) {
     const uint32_t normal = 1U << NX | 1U << NY | 1U << NZ, uv = 1U << U | 1U << V;
     if ((element->uses & normal) == normal)
         RT_TRY(rt_mesh_add_normal(file->mesh, rt_narrow(rt_vec3d(at[NX], at[NY], at[NZ]))));
-    if ((element->uses & uv) == uv)
-        RT_TRY(rt_mesh_add_uv(file->mesh, (RtUv){(float)at[U], (float)at[V]}));
+    if ((element->uses & uv) == uv) RT_TRY(rt_mesh_add_uv(file->mesh, (RtUv){(float)at[U], (float)at[V]}));
     return rt_mesh_add_vertex(file->mesh, rt_vec3d(at[X], at[Y], at[Z]));
 }
 

@@ -461,8 +461,7 @@ static RtStatus add_primitive(Gltf *g, const Item *mesh, json_t *object, const P
     RT_TRY(read_accessor(g, &attributes, "POSITION", 3, 0, &memory, &positions));
     if (!positions.at) return rt_mesh_warn(r, "primitives without positions are left out");
     RT_TRY(read_accessor(g, &attributes, "NORMAL", 3, positions.count, &memory, &normals));
-    if (r->textured)
-        RT_TRY(read_accessor(g, &attributes, "TEXCOORD_0", 2, positions.count, &memory, &uvs));
+    if (r->textured) RT_TRY(read_accessor(g, &attributes, "TEXCOORD_0", 2, positions.count, &memory, &uvs));
     RT_TRY(read_accessor(g, &primitive, "indices", 1, 0, &memory, &indices));
     RT_TRY(morph(g, &primitive, pose->weights, "POSITION", &positions));
     RT_TRY(morph(g, &primitive, pose->weights, "NORMAL", &normals));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* MTL, the materials of OBJ. Of each that has an image of its diffuse colour (map_Kd) the image, the name and Kd are
- * read; all else is as in the material that the scene gives the mesh. Materials without an image, and libraries
- * that do not exist, are ignored, as materials of all other formats are. A library or image that cannot be read is
- * left out with a warning: the geometry is known without it. */
+/* MTL, the materials of OBJ. Of each that has an image of its diffuse colour (map_Kd) the image, the name and
+ * Kd are read; all else is as in the material that the scene gives the mesh. Materials without an image, and
+ * libraries that do not exist, are ignored, as materials of all other formats are. A library or image that
+ * cannot be read is left out with a warning: the geometry is known without it. */
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/scene/mesh.h"
@@ -88,7 +88,8 @@ RtStatus rt_mesh_read_mtl(RtMeshReader *r, RtWord name, const RtMaterial *plain)
     char folder[RT_MAX_PATH], file[RT_MAX_PATH], path[RT_MAX_PATH], *text;
     size_t size;
     RtError why;
-    snprintf(file, sizeof file, "%.*s", (int)(name.length < RT_MAX_PATH ? name.length : RT_MAX_PATH), name.text);
+    snprintf(file, sizeof file, "%.*s", (int)(name.length < RT_MAX_PATH ? name.length : RT_MAX_PATH),
+             name.text);
     rt_path_folder(r->text.path, folder);
     RtStatus status = rt_path_join(folder, file, path, &why);
     if (status == RT_OK && (!*file || !rt_file_exists(path))) return RT_OK;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Wavefront OBJ: vertices, vertex normals and polygons. Texture coordinates are read if the mesh is textured, else
- * counted, to check their indices. A material counts if it has an image (mesh_mtl.c). Names are skipped; points, lines, curves, surfaces and unknown
- * words with a warning. Faces may stand before their vertices: the first that does has all later vertices
- * read. The format has no end mark and no counts, so a file that was cut off behind a line break cannot be
- * told from a whole one. */
+/* Wavefront OBJ: vertices, vertex normals and polygons. Texture coordinates are read if the mesh is textured,
+ * else counted, to check their indices. A material counts if it has an image (mesh_mtl.c). Names are skipped;
+ * points, lines, curves, surfaces and unknown words with a warning. Faces may stand before their vertices:
+ * the first that does has all later vertices read. The format has no end mark and no counts, so a file that
+ * was cut off behind a line break cannot be told from a whole one. */
 #include "core/scene/mesh.h"
 
 #include <inttypes.h>
@@ -181,7 +181,8 @@ static void use_material(Obj *obj) {
     RtMeshReader *r = obj->mesh;
     const RtWord line = take_line(&r->text);
     char name[RT_MAX_NAME];
-    snprintf(name, sizeof name, "%.*s", (int)(line.length < RT_MAX_NAME ? line.length : RT_MAX_NAME), line.text);
+    snprintf(name, sizeof name, "%.*s", (int)(line.length < RT_MAX_NAME ? line.length : RT_MAX_NAME),
+             line.text);
     r->material = obj->plain;
     for (uint32_t i = obj->own; i < r->scene->material_count && r->textured; i++)
         if (strcmp(r->scene->materials[i].name, name) == 0) r->material = i;

@@ -41,7 +41,8 @@ static RtStatus check_texture(const char *material, const RtTexture *texture, Rt
     for (int channel = 0; channel < 3; channel++)
         RT_TRY(check_range(material, "a colour of the checker", texture->color.at[channel], 0, 1e6f, error));
     if (!rt_finite(texture->origin))
-        return rt_fail(error, RT_BAD_INPUT, "material '%s': the origin of its texture is not finite", material);
+        return rt_fail(error, RT_BAD_INPUT, "material '%s': the origin of its texture is not finite",
+                       material);
     return check_range(material, "the size of the texture", texture->size, 1e-6f, 1e6f, error);
 }
 
@@ -271,8 +272,8 @@ static RtStatus append_triangle(const Append *a, uint32_t material, uint32_t ind
         RtVec3 n = g->vertex_normals[entry].n[i];
         normals[i] = a->transform ? rt_transform_normal(a->transform, n) : n;
     }
-    RT_TRY(rt_scene_add_triangle(a->to, material, vertices, entry == RT_NO_NORMALS ? NULL : normals,
-                                 a->error));
+    RT_TRY(
+        rt_scene_add_triangle(a->to, material, vertices, entry == RT_NO_NORMALS ? NULL : normals, a->error));
     const RtTriangleTexture *texture = rt_scene_triangle_texture(a->from, index);
     return texture ? rt_scene_set_triangle_texture(a->to, texture->at, a->error) : RT_OK;
 }

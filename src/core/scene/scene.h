@@ -28,7 +28,7 @@ typedef struct RtMaterial {
     float transmission; /* kt in 0..1; above 0 spawns a transmission ray, or its total internal reflection */
     float ior;          /* index of refraction, > 0, of the inside (behind the normal) relative to the
                          * outside */
-    RtTexture texture; /* a zeroed struct: none */
+    RtTexture texture;  /* a zeroed struct: none */
 } RtMaterial;
 
 /* A point light. */
@@ -79,8 +79,8 @@ RtMaterial rt_default_material(void);
 /* Appends a material, as one more user of its texels, and returns its index; rejects values out of range. */
 RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint32_t *index, RtError *error);
 
-/* Gets the texels of the image at `path`: a material's of the scene, or those of the file (rt_texels_load). The
- * caller is one of their users. */
+/* Gets the texels of the image at `path`: a material's of the scene, or those of the file (rt_texels_load).
+ * The caller is one of their users. */
 RtStatus rt_scene_load_texels(const RtScene *scene, const char *path, RtTexels **texels, RtError *error);
 
 RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, RtError *error);
@@ -94,7 +94,8 @@ RtStatus rt_scene_add_triangle(RtScene *scene, uint32_t material, const RtVec3 v
 RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float base_radius, RtVec3 apex,
                            float apex_radius, RtError *error);
 
-/* Sets the texture coordinates of the triangle added last, if its material has a texture and they are finite. */
+/* Sets the texture coordinates of the triangle added last, if its material has a texture and they are finite.
+ */
 RtStatus rt_scene_set_triangle_texture(RtScene *scene, const RtUv at[3], RtError *error);
 
 /* The texture coordinates of triangle `index` of the geometry; NULL if it has none. */

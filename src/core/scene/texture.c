@@ -21,8 +21,9 @@ static RtStatus decode(const char *bytes, size_t size, RtTexels *texels, RtError
     texels->width = png.width;
     texels->height = png.height;
     if (count > MOST_TEXELS)
-        status = rt_fail_at(error, texels->path, 0, 0, "%u x %u pixels are too many: make it smaller, %d at most",
-                            png.width, png.height, MOST_TEXELS);
+        status =
+            rt_fail_at(error, texels->path, 0, 0, "%u x %u pixels are too many: make it smaller, %d at most",
+                       png.width, png.height, MOST_TEXELS);
     else if (!(texels->rgb = rt_alloc(count, 3)))
         status = rt_fail_memory(error, "an image", 3 * count);
     else if (!png_image_finish_read(&png, NULL, texels->rgb, 0, NULL))

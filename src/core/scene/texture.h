@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Textures: the colour of a material as a function of texture coordinates (u, v): a checker, or an image. (Blinn
- * & Newell 1976, CACM 19(10).) A value in the material; only the texels of an image, a PNG file, are shared, by
- * all materials that name the file. They are read only, and every thread may use them.
+/* Textures: the colour of a material as a function of texture coordinates (u, v): a checker, or an image.
+ * (Blinn & Newell 1976, CACM 19(10).) A value in the material; only the texels of an image, a PNG file, are
+ * shared, by all materials that name the file. They are read only, and every thread may use them.
  *
  * An image covers 0 <= u, v < 1, its lower row at v = 0, and repeats outside. A point has the colour of the
  * texel that it lies in (nearest neighbour): it can be checked by hand, and samples per pixel smooth it. */
@@ -22,8 +22,8 @@ typedef struct RtTexels {
     char path[RT_MAX_PATH]; /* absolute */
 } RtTexels;
 
-/* Reads a PNG file of at most 256 MiB and 2^26 pixels, of any kind; what is transparent is on black. *texels has
- * one user, the caller. Rejects other files and damaged ones. */
+/* Reads a PNG file of at most 256 MiB and 2^26 pixels, of any kind; what is transparent is on black. *texels
+ * has one user, the caller. Rejects other files and damaged ones. */
 RtStatus rt_texels_load(const char *path, RtTexels **texels, RtError *error);
 
 /* One user more; NULL is allowed. */
@@ -42,8 +42,8 @@ typedef struct RtTexture {
     RtVec3 origin;    /* where projected coordinates are (0, 0) */
 } RtTexture;
 
-/* The colour at (u, v), finite numbers, of a material with `color`: of a checker, that in square (0, 0), and in
- * the squares beside it the texture's; of an image, the texel times `color`. */
+/* The colour at (u, v), finite numbers, of a material with `color`: of a checker, that in square (0, 0), and
+ * in the squares beside it the texture's; of an image, the texel times `color`. */
 RtVec3 rt_texture_color(const RtTexture *texture, RtVec3 color, double u, double v);
 
 #endif
