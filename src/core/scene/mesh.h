@@ -110,9 +110,8 @@ RtStatus rt_mesh_add_uv(RtMeshReader *r, RtUv uv);
 /* Adds a corner; its indices must be valid. Rejects a vertex that is not finite. */
 RtStatus rt_mesh_add_corner(RtMeshReader *r, RtMeshCorner corner);
 
-/* Adds a corner with vertex `index`, counted from 0, and if there are normals or texture coordinates,
- * those of the same index.
- * Rejects a vertex that does not exist. */
+/* Adds a corner with vertex `index`, counted from 0, and if there are normals or texture coordinates, those
+ * of the same index. Rejects a vertex that does not exist. */
 RtStatus rt_mesh_add_index(RtMeshReader *r, double index);
 
 /* Adds the polygon of the corners as triangles, and removes the corners. Triangles have vertex normals if all

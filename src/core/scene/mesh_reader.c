@@ -88,7 +88,8 @@ static RtStatus add_triangle(RtMeshReader *r, const RtMeshCorner corners[3]) {
     }
     const RtStatus status =
         rt_scene_add_triangle(r->scene, r->material, vertices, has_normals ? normals : NULL, r->text.error);
-    if (status == RT_OK) return rt_scene_set_triangle_texture(r->scene, uv, r->text.error);
+    if (status == RT_OK && r->textured) return rt_scene_set_triangle_texture(r->scene, uv, r->text.error);
+    if (status == RT_OK) return RT_OK;
     char face[48];
     snprintf(face, sizeof face, "face %u (counted from 0): ", r->face_count);
     return rt_scan_place(&r->text, status, r->text.last, face);
