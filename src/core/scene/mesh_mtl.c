@@ -50,7 +50,10 @@ static RtStatus read_image(Library *library, const char *text) {
     *texture = (RtTexture){0};
     RtStatus status = rt_path_join(library->folder, name, path, &why);
     if (status == RT_OK) status = rt_scene_load_texels(library->mesh->scene, path, &texture->texels, &why);
-    if (status == RT_OK) *texture = (RtTexture){texture->texels, RT_TEXTURE_IMAGE, 1, {{0}}, {{0}}};
+    if (status == RT_OK) {
+        texture->kind = RT_TEXTURE_IMAGE;
+        texture->size = 1;
+    }
     return excuse(library->mesh, status, &why);
 }
 
