@@ -24,7 +24,7 @@ typedef struct RtTexels {
 
 /* Reads a PNG file of at most 256 MiB and 2^26 pixels, of any kind; what is transparent is on black. *texels
  * has one user, the caller. Rejects other files and damaged ones. */
-RtStatus rt_texels_load(const char *path, RtTexels **texels, RtError *error);
+RtStatus rt_texels_load(const char *path, RtTexels **out, RtError *error);
 
 /* One user more; NULL is allowed. */
 void rt_texels_share(RtTexels *texels);
