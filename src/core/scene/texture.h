@@ -22,7 +22,7 @@ typedef struct RtTexels {
     char path[RT_MAX_PATH]; /* absolute */
 } RtTexels;
 
-/* Reads a PNG file of at most 256 MiB and 2^26 pixels, of any kind; what is transparent is on black. *texels
+/* Reads a PNG file of at most 256 MiB and 2^26 pixels, of any kind; what is transparent is on black. *out
  * has one user, the caller. Rejects other files and damaged ones. */
 RtStatus rt_texels_load(const char *path, RtTexels **out, RtError *error);
 
