@@ -7,6 +7,8 @@
 
 #include "scenes/open.h"
 
+#include <png.h>
+
 static inline RtScene open_scene(const char *spec) {
     RtScene scene;
     assert_ok(rt_scene_open(spec, &scene, error));
@@ -47,6 +49,13 @@ static inline RtStatus open_bytes(const char *path, const void *bytes, size_t co
                                   RtError *error) {
     write_bytes(path, bytes, count);
     return rt_scene_open(path, scene, error);
+}
+
+/* A PNG file of these pixels, `width` a row, from the upper left. */
+static inline void write_png(const char *path, uint32_t width, uint32_t height, const void *rgb) {
+    png_image png = {
+        .version = PNG_IMAGE_VERSION, .width = width, .height = height, .format = PNG_FORMAT_RGB};
+    assert_true(png_image_write_to_file(&png, path, 0, rgb, 0, NULL));
 }
 
 static inline RtScene scene_of(const char *path, const char *text) {

@@ -75,6 +75,18 @@ static RtStatus move_rays(const Options *o, RtError *error) {
     return status;
 }
 
+/* Textures are YAML's alone. */
+static RtStatus warn_textures(RtScene *scene, const char *out, RtError *error) {
+    uint32_t textures = 0;
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        textures += scene->materials[i].texture.kind != RT_TEXTURE_NONE;
+    if (textures == 0 || rt_ends_in(out, ".yaml") || rt_ends_in(out, ".yml")) return RT_OK;
+    scene->warnings.first = scene->warnings.count;
+    return rt_warn_at(&scene->warnings, out, 0, error,
+                      "the textures of %u material%s are left out, which only .yaml keeps", textures,
+                      rt_plural(textures));
+}
+
 RtStatus rt_command_convert(int argc, char **argv, RtError *error) {
     Options o = {.offset = {{NAN, NAN, NAN}}};
     const double *by = o.offset.at;
@@ -86,6 +98,7 @@ RtStatus rt_command_convert(int argc, char **argv, RtError *error) {
     if (rt_ends_in(o.in, ".npy")) return move_rays(&o, error);
     RT_TRY(o.recentre ? rt_scene_load(o.in, rt_builtin_open, &o.offset, &scene, error)
                       : rt_scene_open(o.in, &scene, error));
+    RT_TRY(warn_textures(&scene, o.out, error));
     rt_cli_tell_warnings(&scene);
     RT_TRY(rt_scene_save(&scene, o.out, error));
     if (o.recentre)

@@ -87,12 +87,18 @@ static void print_vector(const char *what, RtVec3 v) {
     printf("  %-13s %.6g %.6g %.6g\n", what, (double)v.x, (double)v.y, (double)v.z);
 }
 
+/* "checker", or the path of an image; NULL without a texture. */
+static const char *texture_of(const RtMaterial *m) {
+    return m->texture.texels ? m->texture.texels->path : m->texture.kind ? "checker" : NULL;
+}
+
 static void print_material(const RtMaterial *m) {
     printf("  %-13s color %.3g %.3g %.3g, ambient %.3g, diffuse %.3g, specular %.3g, shine %.4g,\n"
            "  %-13s reflection %.3g, transmission %.3g, ior %.3g\n",
            m->name, (double)m->color.x, (double)m->color.y, (double)m->color.z, (double)m->ambient,
            (double)m->diffuse, (double)m->specular, (double)m->shine, "", (double)m->reflection,
            (double)m->transmission, (double)m->ior);
+    if (texture_of(m)) printf("  %-13s texture %s, size %.4g\n", "", texture_of(m), (double)m->texture.size);
 }
 
 static void print_info(const RtScene *scene, const Counts *counts) {
@@ -135,11 +141,11 @@ static void print_info(const RtScene *scene, const Counts *counts) {
 /* ---- as JSON ---- */
 
 static json_t *material_json(const RtMaterial *m) {
-    return json_pack("{s:s, s:o, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "name", m->name, "color",
+    return json_pack("{s:s, s:o, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:s?}", "name", m->name, "color",
                      rt_cli_vector_json(m->color), "ambient", (double)m->ambient, "diffuse",
                      (double)m->diffuse, "specular", (double)m->specular, "shine", (double)m->shine,
                      "reflection", (double)m->reflection, "transmission", (double)m->transmission, "ior",
-                     (double)m->ior);
+                     (double)m->ior, "texture", texture_of(m));
 }
 
 static json_t *info_json(const RtScene *scene, const Counts *counts) {

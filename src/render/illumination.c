@@ -15,18 +15,50 @@ static double offset_of(const RtGeometry *g, uint32_t object, RtVec3d point, dou
     return 0x1p-21 * reach + 2 * own + fmin(scene, 0x1p-18 * reach);
 }
 
+/* The colour that the texture of material `m` has at a point of the object. */
+static RtVec3 textured_color(const RtScene *scene, const RtMaterial *m, uint32_t object, RtVec3d point,
+                             RtVec3d normal) {
+    const RtGeometry *g = &scene->geometry;
+    const RtShape shape = rt_ref_shape(g->objects[object]);
+    const uint32_t index = rt_ref_index(g->objects[object]);
+    const RtTriangleTexture *corners =
+        shape == RT_SHAPE_TRIANGLE ? rt_scene_triangle_texture(scene, index) : NULL;
+    double u = 0, v = 0;
+    if (shape == RT_SHAPE_SPHERE) {
+        const RtVec3d p = rt_subd(point, rt_widen(g->spheres[index].center));
+        u = rt_angle(p.y, p.x) / 360 + 0.5;
+        v = fmin(rt_angle(p.z, sqrt(p.x * p.x + p.y * p.y)) / 180 + 0.5, 1 - 0x1p-53); /* 1 would repeat 0 */
+    } else if (corners) {
+        const RtVec3d weights = rt_triangle_weights(&g->triangles[index], point);
+        for (int i = 0; i < 3; i++) {
+            u += weights.at[i] * (double)corners->at[i].u;
+            v += weights.at[i] * (double)corners->at[i].v;
+        }
+    } else {
+        const RtVec3d p = rt_subd(point, rt_widen(m->texture.origin));
+        const int axis = rt_major_axis(rt_narrow(normal));
+        u = p.at[axis == 0 ? 1 : 0];
+        v = p.at[axis == 2 ? 1 : 2];
+    }
+    return rt_texture_color(&m->texture, m->color, u, v);
+}
+
 RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit, RtCrossing *crossings) {
     const RtGeometry *g = &scene->geometry;
     RtVec3d point = rt_ray_point(ray, hit.t);
     RtNormals normals = rt_object_normals(g, hit.object, ray, hit.t, crossings);
-    uint32_t material = normals.solid == RT_NO_SOLID ? scene->material_of[hit.object]
-                                                     : g->forest.set.solids[normals.solid].material;
+    const RtMaterial *material =
+        &scene->materials[normals.solid == RT_NO_SOLID ? scene->material_of[hit.object]
+                                                       : g->forest.set.solids[normals.solid].material];
     RtVec3d dir = rt_widen(ray->dir);
     bool entering = rt_dotd(dir, normals.geometric) < 0;
     RtVec3d side = entering ? normals.geometric : rt_scaled(normals.geometric, -1);
     bool turn = rt_dotd(normals.shading, side) < 0;
     return (RtSurface){
-        .material = &scene->materials[material],
+        .material = material,
+        .color = material->texture.kind == RT_TEXTURE_NONE
+                     ? material->color
+                     : textured_color(scene, material, hit.object, point, normals.geometric),
         .point = point,
         .arriving = rt_normalized(dir),
         .side = side,
@@ -45,7 +77,7 @@ RtSurface rt_surface_outward(const RtSurface *surface) {
 }
 
 RtVec3 rt_ambient_light(const RtScene *scene, const RtSurface *surface) {
-    return rt_scale(rt_mul(surface->material->color, scene->ambient), surface->material->ambient);
+    return rt_scale(rt_mul(surface->color, scene->ambient), surface->material->ambient);
 }
 
 /* `dir` mirrored at the plane with unit normal `n`. */
@@ -65,8 +97,8 @@ static RtVec3d direction_to(const RtSurface *surface, const RtLight *light) {
 
 /* kd (N.L) */
 static RtVec3 matte_light(const RtSurface *surface, RtVec3d to_light) {
-    const RtMaterial *m = surface->material;
-    return rt_scale(m->color, (float)((double)m->diffuse * rt_dotd(surface->normal, to_light)));
+    return rt_scale(surface->color,
+                    (float)((double)surface->material->diffuse * rt_dotd(surface->normal, to_light)));
 }
 
 /* ks (R.V)^shine */

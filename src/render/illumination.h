@@ -3,8 +3,8 @@
  *
  *   I = ka Ia + sum over lights of S_L I_L (kd (N.L) + ks (R.V)^shine) + kt It + kr Ir
  *
- * ka and kd multiply the colour of the material, ks, kt and kr are white; S_L is 0 if any object lies between
- * the point and the light, else 1. (Whitted 1980, CACM 23(6), with Phong's highlight.)
+ * ka and kd multiply the colour of the material or of its texture, ks, kt and kr are white; S_L is 0 if any
+ * object lies between the point and the light, else 1. (Whitted 1980, CACM 23(6), with Phong's highlight.)
  *
  * Normals. Both normals are turned to the side of the surface that the ray came from, decided by the
  * geometric one. N is the shading normal; a direction that it sends to the wrong side of the surface is
@@ -23,6 +23,11 @@
  * is the scene's, limited by the size of the point: in a scene of size 10^6 with details of size 1 it would
  * move a ray through walls.
  *
+ * Texture coordinates. A sphere has (longitude / 360, latitude / 180), (1/2, 1/2) where it faces +x, v = 1 at
+ * +z. A triangle with coordinates at its vertices interpolates them. Everything else, solids of CSG trees
+ * too, is projected along the axis nearest to its geometric normal: (u, v) is the point less the texture's
+ * origin without that axis, (x, y), (x, z) or (y, z). So neighbours in a plane share one pattern.
+ *
  * Only + - * / sqrt affect rays; pow affects colours only. */
 #ifndef RT_RENDER_ILLUMINATION_H
 #define RT_RENDER_ILLUMINATION_H
@@ -32,6 +37,7 @@
 /* A hit, prepared for shading. Borrows the scene's material; for a CSG tree that of the solid. */
 typedef struct RtSurface {
     const RtMaterial *material;
+    RtVec3 color; /* the material's, or its texture's there */
     RtVec3d point;
     RtVec3d arriving; /* unit direction of the ray; the viewer is at -arriving */
     RtVec3d side;     /* unit geometric normal, on the viewer's side */

@@ -490,6 +490,18 @@ RT_TEST(sines_and_cosines_of_any_angle_are_within_their_bound) {
     }
 }
 
+RT_TEST(angles_of_points_are_within_their_bound_and_exact_on_the_axes) {
+    for (int i = -36000; i <= 36000; i++) {
+        const RtTurn turn = rt_turn(i * 0.005);
+        const double length = ldexp(1 + (i & 7), i % 500), y = length * turn.sine, x = length * turn.cosine;
+        const long double exact = atan2l((long double)y, (long double)x) * 180 / 3.14159265358979323846264L;
+        assert_true(fabsl((long double)rt_angle(y, x) - exact) < 1e-13L || (y == 0 && x < 0));
+    }
+    assert_true(rt_angle(0, 3) == 0 && rt_angle(2, 0) == 90 && rt_angle(0, -1) == 180 &&
+                rt_angle(-1e-300, 0) == -90);
+    assert_true(rt_angle(0, 0) == 0);
+}
+
 /* Half the height of a view is the tangent of half its angle. */
 RT_TEST(tangents_of_views_are_rounded_rightly_to_float32) {
     for (int i = 1; i < 180000; i++) {

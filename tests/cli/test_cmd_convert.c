@@ -23,6 +23,26 @@ RT_TEST(convert_keeps_the_scene_and_the_files_that_are_there) {
     assert_int_equal(convert("balls:size=2 " OUT ".yaml --force"), 0);
 }
 
+RT_TEST(convert_keeps_textures_in_yaml_and_says_that_nff_loses_them) {
+    static const char triangle[] =
+        "materials: [{name: it's a globe, texture: {image: " RT_SOURCE_DIR "/scenes/globe.png}}]\n"
+        "objects: [triangle: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]], uv: [[0, 0], [1, 0], [0, 1]],\n"
+        "  material: it's a globe}]\n";
+    assert_ok(rt_file_write(OUT "-in.yaml", triangle, strlen(triangle), error));
+    assert_said(raytally_to("2>" OUT ".txt", "convert --force %s", OUT "-in.yaml " OUT ".yaml"), 0,
+                OUT ".txt", "");
+    RtScene in = open_scene(OUT "-in.yaml"), out = open_scene(OUT ".yaml");
+    assert_true(rt_scene_fingerprint(&in) == rt_scene_fingerprint(&out));
+    assert_true(in.triangle_texture_count == 1 && out.triangle_texture_count == 1);
+    rt_scene_clear(&in);
+    rt_scene_clear(&out);
+    static const char *const others[] = {"nff", "obj"};
+    for (size_t i = 0; i < 2; i++)
+        assert_said(raytally_to("2>" OUT ".txt", "convert --force " OUT "-in.yaml " OUT ".%s", others[i]), 0,
+                    OUT ".txt", "the textures of 1 material are left out");
+    assert_int_equal(convert("--force --strict " OUT "-in.yaml " OUT ".nff"), 2);
+}
+
 RT_TEST(convert_refuses_and_leaves_nothing_behind) {
     remove(OUT ".ply");
     assert_int_equal(convert("balls:size=1"), 2);

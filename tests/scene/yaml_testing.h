@@ -39,6 +39,7 @@ static inline int make_folder(void **state) {
     write_text(RT_TEST_FOLDER "/open.obj", /* a pyramid without its base */
                "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
     write_text(RT_TEST_FOLDER "/bunny.obj", corner); /* what the documentation calls so */
+    write_png(RT_TEST_FOLDER "/wood.png", 2, 1, "\x80\x40\x20\xff\xff\xff");
     return 0;
 }
 
@@ -51,10 +52,11 @@ static const char everything[] =
     "  - {position: [5, -5, 10]}\n"
     "  - {position: [-5, -5, 10], intensity: [0.5, 0.4, 0.3]}\n"
     "materials:\n"
-    "  - {name: red, color: [1, 0, 0], specular: 0.5, shine: 20}\n"
+    "  - {name: red, color: [1, 0, 0], specular: 0.5, shine: 20, texture: {image: wood.png, size: 2}}\n"
     "  - name: \"gl\\u00e4s \\\"x\\\"\"\n"
     "    transmission: 0.9\n"
     "    ior: 1.5\n"
+    "    texture: {checker: 0.3, color: [0.1, 0.2, 0.3], origin: [0.1, 2, 3]}\n"
     "objects:\n"
     "  - sphere: {center: [0, 0, 1], radius: 1e-40, material: red}\n"
     "  - sphere: {center: [0.1, -0.0, 3.3333333], radius: .1}\n"
@@ -63,6 +65,7 @@ static const char everything[] =
     "  - triangle:\n"
     "      vertices: [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\n"
     "      normals: [[1, 1, 1], [0.3, 0.2, 0.9], [7, 1, 1]]\n"
+    "      uv: [[0, 0.1], [-1, 1e20], [0.3, 0.7]]\n"
     "      material: \"gl\\u00e4s \\\"x\\\"\"\n"
     "  - cone: {base: [0, 0, 0], base_radius: 1, apex: [0, 0, 2], apex_radius: 0, material: red}\n"
     "  - cylinder: {base: [0, 0, 0], apex: [0, 0, 2], radius: 0.3}\n"

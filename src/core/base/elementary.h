@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Logarithm, power, cube root, sine and cosine from + - * / alone. Libraries differ in their last bits;
- * these functions return the same bits with every compiler and library. Rays, hits, counts and images use
- * no others. */
+/* Logarithm, power, cube root, sine, cosine and their inverse from + - * / and sqrt alone. Libraries differ
+ * in their last bits; these functions return the same bits with every compiler and library. Rays, hits,
+ * counts and images use no others. */
 #ifndef RT_BASE_ELEMENTARY_H
 #define RT_BASE_ELEMENTARY_H
 
@@ -21,5 +21,9 @@ typedef struct RtTurn {
 
 /* Sine and cosine of any finite angle in degrees, each to within 4e-16; multiples of 90 degrees are exact. */
 RtTurn rt_turn(double degrees);
+
+/* The angle of the point (x, y) in degrees, -180..180, counter-clockwise from the x axis, to within 1e-13;
+ * exact on the axes. 0 for the origin. */
+double rt_angle(double y, double x);
 
 #endif

@@ -29,8 +29,8 @@ RtStatus rt_scene_save(const RtScene *scene, const char *path, RtError *error);
     X(ambient) X(diffuse) X(specular) X(shine) X(reflection) X(transmission) X(ior)
 
 /* Reads the file at `path` into `scene`, initialised by rt_scene_init; the caller then finishes it, or
- * clears it after a failure. Mesh paths are relative to the file; `open_named` opens scenes that it names.
- * The scene's name does not change. */
+ * clears it after a failure. Paths of meshes and images are relative to the file; `open_named` opens scenes
+ * that it names. The scene's name does not change. */
 RtStatus rt_yaml_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error);
 
 /* The same for a text in memory; `name` stands for the path. */
@@ -38,8 +38,8 @@ RtStatus rt_yaml_load_text(const char *name, const char *text, RtSceneOpener *op
                            RtError *error);
 
 /* Writes a finished scene, one object per line; reading it back yields the same fingerprint. Meshes and
- * built-ins are written as their objects. Materials keep their names if all are valid and different;
- * otherwise they are called m0, m1 ... */
+ * built-ins are written as their objects, images of textures as absolute paths. Materials keep their names if
+ * all are valid and different; otherwise they are called m0, m1 ... */
 RtStatus rt_yaml_save(const RtScene *scene, FILE *out, RtError *error);
 
 #endif

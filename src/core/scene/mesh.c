@@ -77,6 +77,7 @@ RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, con
                       .material = material,
                       .transform = transform ? *transform : rt_transform_identity()};
     for (int a = 0; a < 3; a++) r.transform.m[a][3] -= scene->offset.at[a];
+    r.textured = scene->materials[material].texture.kind != RT_TEXTURE_NONE;
     r.moves = rt_lengthd(rt_transform_column(&r.transform, 3)) > 0;
     scene->warnings.first = scene->warnings.count;
     RT_TRY(check_head(format, &r));
@@ -88,6 +89,7 @@ RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, con
     if (status == RT_OK && scene->geometry.object_count == before) status = fail_empty(&r);
     rt_free(r.vertices);
     rt_free(r.normals);
+    rt_free(r.uvs);
     rt_free(r.corners);
     rt_free(data);
     return status;

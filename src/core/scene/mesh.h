@@ -3,8 +3,9 @@
  *
  * Triangles come in the order of the file; of glTF, nodes depth first, then the primitives of a mesh.
  * Polygons are split into triangles; points and lines are left out. Nothing is merged, removed or invented:
- * triangles without area stay (they are never hit), and only the file's own vertex normals are used.
- * Materials, cameras and lights of the file are ignored.
+ * triangles without area stay (they are never hit), and only the file's own vertex normals are used. Texture
+ * coordinates (OBJ, PLY, glTF) are kept where the material has a texture. Materials, cameras and lights of
+ * the file are ignored, except images in materials of OBJ (mesh_mtl.c).
  *
  * What is unused or redundant, or has one sensible reading, is read whatever it is like; what is left out or
  * guessed, and changes the picture or may be damage, is a warning of the scene (core/base/warnings.h). A file
@@ -29,9 +30,9 @@
 enum { RT_MESH_WRITTEN = 4 };
 const char *rt_mesh_extension(size_t i);
 
-/* Adds the triangles of `path` to the scene with `material`, moved by `transform` (NULL: in place). After
- * a failure some may remain, and the scene must be cleared. Rejects damaged files, files without triangles,
- * and faces with vertices that are not finite. */
+/* Adds the triangles of `path` to the scene with `material` (OBJ: or its own, with images), moved by
+ * `transform` (NULL: in place). After a failure some may remain, and the scene must be cleared. Rejects
+ * damaged files, files without triangles, and faces with vertices that are not finite. */
 RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
                         RtError *error);
 
@@ -41,8 +42,8 @@ RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error);
 /* Writes the triangles of a scene in format `i`, without sharing vertices. Coordinates
  * survive bit for bit in ply, stl and glb, and within the rounding of the reader in obj. stl has facet
  * normals only. If only some triangles have vertex normals, ply and glb use the geometric normal for the
- * others. Rejects scenes with other shapes and names formats that support them. Materials, lights and camera
- * are not written. */
+ * others. Rejects scenes with other shapes and names formats that support them. Materials, texture
+ * coordinates, lights and camera are not written. */
 RtStatus rt_mesh_save(const RtScene *scene, size_t i, FILE *file, RtError *error);
 
 /* ---- what the readers share: mesh_reader.c ----
@@ -57,11 +58,12 @@ RtStatus rt_mesh_save(const RtScene *scene, size_t i, FILE *file, RtError *error
 #define RT_MESH_MAX_BYTES ((size_t)1 << 33)
 enum { RT_MESH_MAX_JSON = 1 << 28 };
 
-#define RT_NO_NORMAL UINT32_MAX
+#define RT_MESH_NONE UINT32_MAX
 
 typedef struct RtMeshCorner {
     uint32_t vertex;
-    uint32_t normal; /* RT_NO_NORMAL: none */
+    uint32_t normal; /* RT_MESH_NONE: none */
+    uint32_t uv;     /* likewise */
 } RtMeshCorner;
 
 typedef struct RtMeshReader {
@@ -71,9 +73,12 @@ typedef struct RtMeshReader {
     uint32_t material;
     RtTransform transform; /* of vertices and normals, less the offset of the scene */
     bool moves;            /* it does, so that coordinates are read as doubles and rounded behind it */
+    bool textured;         /* a material has a texture: texture coordinates are kept */
     uint32_t vertex_count, vertex_capacity, normal_count, normal_capacity, corner_count, corner_capacity;
+    uint32_t uv_count, uv_capacity;
     RtVec3 *vertices;      /* [vertex_count] transformed */
     RtVec3 *normals;       /* [normal_count] likewise */
+    RtUv *uvs;             /* [uv_count] texture coordinates */
     RtMeshCorner *corners; /* [corner_count] of the polygon being read */
     uint32_t face_count;   /* polygons added */
 } RtMeshReader;
@@ -98,11 +103,15 @@ RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3d place);
  * used. */
 RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal);
 
+/* Adds texture coordinates, if the mesh is textured. Those that are not finite, with a warning, are ignored
+ * where they are used. */
+RtStatus rt_mesh_add_uv(RtMeshReader *r, RtUv uv);
+
 /* Adds a corner; its indices must be valid. Rejects a vertex that is not finite. */
 RtStatus rt_mesh_add_corner(RtMeshReader *r, RtMeshCorner corner);
 
-/* Adds a corner with vertex `index`, counted from 0, and if there are normals, that of the same index.
- * Rejects a vertex that does not exist. */
+/* Adds a corner with vertex `index`, counted from 0, and if there are normals or texture coordinates, those
+ * of the same index. Rejects a vertex that does not exist. */
 RtStatus rt_mesh_add_index(RtMeshReader *r, double index);
 
 /* Adds the polygon of the corners as triangles, and removes the corners. Triangles have vertex normals if all
@@ -154,6 +163,7 @@ RtStatus rt_mesh_check_glb(RtMeshReader *r, const RtMeshHead *head);
 
 /* Each reads the whole file of r->text, and adds its triangles to r->scene. */
 RtStatus rt_mesh_read_obj(RtMeshReader *r);
+RtStatus rt_mesh_read_mtl(RtMeshReader *r, RtWord name, const RtMaterial *plain); /* for OBJ: mesh_mtl.c */
 RtStatus rt_mesh_read_off(RtMeshReader *r);
 RtStatus rt_mesh_read_ply(RtMeshReader *r);
 RtStatus rt_mesh_read_stl(RtMeshReader *r);

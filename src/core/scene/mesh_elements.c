@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* PLY (Greg Turk): a header that declares elements and their properties, then the elements as text or binary.
- * Read are x y z and nx ny nz of the element `vertex`, the list vertex_indices of `face`, and that of
- * `tristrips`, in which -1 ends a strip; everything else is skipped, but must be there. Faces that stand
- * before the vertices are read after them. A line of text holds one element.
+ * Read are x y z, nx ny nz and, if the material has a texture, s t (or u v) of the element `vertex`, the list
+ * vertex_indices of `face`, and that of `tristrips`, in which -1 ends a strip; everything else is skipped,
+ * but must be there. Faces that stand before the vertices are read after them. A line of text holds one
+ * element.
  *
  * OFF, of Geomview, is the same with another header: the numbers of vertices, polygons and edges. Letters
  * before its keyword say what follows the coordinates of a vertex: N a normal, C a colour, ST texture
@@ -25,7 +26,7 @@ static const struct {
                   {"float32", "float", 4}, {"float64", "double", 8}};
 
 /* What a property is for. */
-typedef enum Use { X, Y, Z, NX, NY, NZ, COORDINATES, INDICES = COORDINATES, OTHER } Use;
+typedef enum Use { X, Y, Z, NX, NY, NZ, U, V, COORDINATES, INDICES = COORDINATES, OTHER } Use;
 
 typedef struct Property {
     Type type, count_type; /* count_type: of a list, else TYPES */
@@ -122,14 +123,19 @@ static RtStatus read_type(File *file, RtWord word, Type *type) {
                         "a type (char uchar short ushort int uint float double, or int8 ... float64)");
 }
 
-static Use use_of(const Element *element, const Property *property, RtWord name) {
-    static const char *const coordinates[COORDINATES] = {"x", "y", "z", "nx", "ny", "nz"};
+static Use use_of(const File *file, const Element *element, const Property *property, RtWord name) {
+    static const char *const coordinates[U] = {"x", "y", "z", "nx", "ny", "nz"};
+    static const char *const of_texture[] = {"s", "t", "u", "v", "texture_u", "texture_v"};
     const bool list = property->count_type != TYPES;
     if ((element->kind == FACE || element->kind == STRIPS) && list &&
         (rt_scan_is(name, "vertex_indices") || rt_scan_is(name, "vertex_index")))
         return INDICES;
-    for (Use use = X; use < COORDINATES && element->kind == VERTEX && !list; use++) {
+    for (Use use = X; use < U && element->kind == VERTEX && !list; use++) {
         if (rt_scan_is(name, coordinates[use])) return use;
+    }
+    for (int i = 0; i < 6 && file->mesh->textured && element->kind == VERTEX && !list; i++) {
+        const Use use = i % 2 ? V : U;
+        if (rt_scan_is(name, of_texture[i]) && !(element->uses & 1U << use)) return use;
     }
     return OTHER;
 }
@@ -150,7 +156,7 @@ static RtStatus read_property(File *file) {
     }
     RT_TRY(read_type(file, word, &property.type));
     RT_TRY(take(file, "the name of a property", &word));
-    property.use = use_of(element, &property, word);
+    property.use = use_of(file, element, &property, word);
     if (property.use != OTHER && (element->uses & 1U << property.use))
         return rt_mesh_fail(file->mesh, "the element has this property twice");
     add_property(file, property);
@@ -290,7 +296,7 @@ static RtStatus add_to_strip(RtMeshReader *mesh, double index, RtMeshCorner stri
 
 static RtStatus take_list(File *file, const Property *property, Kind kind) {
     RtMeshReader *mesh = file->mesh;
-    RtMeshCorner strip[2] = {{0, 0}, {0, 0}};
+    RtMeshCorner strip[2] = {{0}, {0}};
     uint32_t length = 0;
     double count = 0, value = 0;
     const bool adds = property->use == INDICES && !file->skips;
@@ -333,9 +339,10 @@ static RtStatus take_element(File *file, const Element *element) {
     }
     if (!file->binary && rt_mesh_more(file->mesh, &word)) RT_TRY(end_line(file, element, word));
     if (element->kind != VERTEX) return RT_OK;
-    const uint32_t normal = 1U << NX | 1U << NY | 1U << NZ;
+    const uint32_t normal = 1U << NX | 1U << NY | 1U << NZ, uv = 1U << U | 1U << V;
     if ((element->uses & normal) == normal)
         RT_TRY(rt_mesh_add_normal(file->mesh, rt_narrow(rt_vec3d(at[NX], at[NY], at[NZ]))));
+    if ((element->uses & uv) == uv) RT_TRY(rt_mesh_add_uv(file->mesh, (RtUv){(float)at[U], (float)at[V]}));
     return rt_mesh_add_vertex(file->mesh, rt_vec3d(at[X], at[Y], at[Z]));
 }
 

@@ -332,7 +332,11 @@ static RtStatus replace_elements(Gltf *g, const Item *accessor, size_t width, Va
  * 0, so many elements. Without one, *out is zeroed. */
 static RtStatus read_accessor(Gltf *g, const Item *owner, const char *key, size_t width, uint32_t expected,
                               RtArena *memory, Values *out) {
-    const char *const name = width == 1 ? "SCALAR" : width == 3 ? "VEC3" : width == 4 ? "VEC4" : "MAT4";
+    const char *const name = width == 1   ? "SCALAR"
+                             : width == 2 ? "VEC2"
+                             : width == 3 ? "VEC3"
+                             : width == 4 ? "VEC4"
+                                          : "MAT4";
     const json_t *reference = json_object_get(owner->object, key);
     Item item = {0};
     uint64_t count = 0;
@@ -449,7 +453,7 @@ static RtStatus add_primitive(Gltf *g, const Item *mesh, json_t *object, const P
     const Item primitive = inside(mesh, object),
                attributes = inside(mesh, json_object_get(object, "attributes"));
     uint64_t mode = 0;
-    Values positions, normals, indices;
+    Values positions, normals, uvs = {0}, indices;
     RT_TRY(count_placed(g, 1));
     RT_TRY(read_integer(g, &primitive, "mode", 0, TRIANGLES, &mode));
     if (mode > FAN) return fail_item(g, &primitive, "expected mode, 0 to 6");
@@ -457,15 +461,18 @@ static RtStatus add_primitive(Gltf *g, const Item *mesh, json_t *object, const P
     RT_TRY(read_accessor(g, &attributes, "POSITION", 3, 0, &memory, &positions));
     if (!positions.at) return rt_mesh_warn(r, "primitives without positions are left out");
     RT_TRY(read_accessor(g, &attributes, "NORMAL", 3, positions.count, &memory, &normals));
+    if (r->textured) RT_TRY(read_accessor(g, &attributes, "TEXCOORD_0", 2, positions.count, &memory, &uvs));
     RT_TRY(read_accessor(g, &primitive, "indices", 1, 0, &memory, &indices));
     RT_TRY(morph(g, &primitive, pose->weights, "POSITION", &positions));
     RT_TRY(morph(g, &primitive, pose->weights, "NORMAL", &normals));
     r->transform = pose->transform;
     if (pose->joints && json_object_get(attributes.object, "JOINTS_0"))
         RT_TRY(apply_skin(g, &attributes, pose, &positions, &normals));
-    r->vertex_count = r->normal_count = 0;
+    r->vertex_count = r->normal_count = r->uv_count = 0;
     for (uint32_t i = 0; i < positions.count; i++) RT_TRY(rt_mesh_add_vertex(r, positions.vectors[i]));
     for (uint32_t i = 0; i < normals.count; i++) RT_TRY(rt_mesh_add_normal(r, rt_narrow(normals.vectors[i])));
+    for (uint32_t i = 0; i < uvs.count; i++) /* v grows downward */
+        RT_TRY(rt_mesh_add_uv(r, (RtUv){(float)uvs.at[2 * i], (float)(1 - uvs.at[2 * i + 1])}));
     return add_triangles(g, mode, indices.at ? indices.count : positions.count, indices.at);
 }
 

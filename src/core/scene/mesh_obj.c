@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Wavefront OBJ: vertices, vertex normals and polygons. Texture coordinates are counted only, to check their
- * indices. Statements about names and materials are skipped; points, lines, curves, surfaces and unknown
- * words with a warning. Faces may stand before their vertices: the first that does has all later vertices
- * read. The format has no end mark and no counts, so a file that was cut off behind a line break cannot be
- * told from a whole one. */
+/* Wavefront OBJ: vertices, vertex normals and polygons. Texture coordinates are read if the mesh is textured,
+ * else counted, to check their indices. A material counts if it has an image (mesh_mtl.c). Names are skipped;
+ * points, lines, curves, surfaces and unknown words with a warning. Faces may stand before their vertices:
+ * the first that does has all later vertices read. The format has no end mark and no counts, so a file that
+ * was cut off behind a line break cannot be told from a whole one. */
 #include "core/scene/mesh.h"
 
 #include <inttypes.h>
@@ -15,6 +15,8 @@ typedef struct Obj {
     bool ahead;             /* all vertices and normals have been read */
     uint32_t before[LISTS]; /* how many stand before the current line, from which negative indices count */
     uint32_t textures;      /* in the file so far, or with `ahead` in all of it */
+    uint32_t plain;         /* the material of what has none with an image */
+    uint32_t own;           /* the first of the file's own */
 } Obj;
 
 static uint32_t count_of(const Obj *obj, List list) {
@@ -56,14 +58,25 @@ static RtStatus read_normal(RtMeshReader *r) {
     return rt_mesh_add_normal(r, normal);
 }
 
+static RtStatus read_uv(RtMeshReader *r) {
+    RtUv uv = {NAN, 0};
+    RtWord word;
+    if (!rt_mesh_more(r, &word) || !rt_scan_float(word, &uv.u)) uv.u = NAN;
+    if (rt_mesh_more(r, &word) && !rt_scan_float(word, &uv.v)) uv.v = NAN;
+    rt_scan_skip_line(&r->text);
+    return rt_mesh_add_uv(r, uv);
+}
+
 static RtStatus read_listed(Obj *obj, List list) {
     obj->before[list]++;
-    if (obj->ahead || list == TEXTURE) {
-        obj->textures += !obj->ahead;
+    obj->textures += list == TEXTURE && !obj->ahead;
+    if (obj->ahead || (list == TEXTURE && !obj->mesh->textured)) {
         rt_scan_skip_line(&obj->mesh->text);
         return RT_OK;
     }
-    return list == VERTEX ? read_vertex(obj->mesh) : read_normal(obj->mesh);
+    return list == VERTEX    ? read_vertex(obj->mesh)
+           : list == TEXTURE ? read_uv(obj->mesh)
+                             : read_normal(obj->mesh);
 }
 
 /* Reads the vertices and normals of the rest of the file, for a face that stands before them. */
@@ -103,7 +116,7 @@ static RtStatus resolve(Obj *obj, int64_t index, List list, uint32_t *out) {
     if (list == VERTEX)
         return rt_mesh_fail(r, "the face names %s %" PRId64 ", but there are %u (counted from 1)",
                             names[list], index, count_of(obj, list));
-    *out = RT_NO_NORMAL;
+    *out = RT_MESH_NONE;
     return rt_mesh_warn(r,
                         "a face names a normal or texture coordinate that does not exist (%s %" PRId64
                         "): it goes without",
@@ -112,7 +125,7 @@ static RtStatus resolve(Obj *obj, int64_t index, List list, uint32_t *out) {
 
 /* "v", "v/vt", "v//vn" or "v/vt/vn"; a slash behind the first two is nothing. */
 static RtStatus read_corner(Obj *obj, RtWord word) {
-    uint32_t indices[LISTS] = {0, 0, RT_NO_NORMAL};
+    uint32_t indices[LISTS] = {0, RT_MESH_NONE, RT_MESH_NONE};
     const char *const end = word.text + word.length;
     RtWord part = {.text = word.text};
     for (List list = VERTEX; list < LISTS; list++) {
@@ -126,7 +139,10 @@ static RtStatus read_corner(Obj *obj, RtWord word) {
             RT_TRY(resolve(obj, index, list, &indices[list]));
         else if (list == VERTEX)
             break;
-        if (at == end) return rt_mesh_add_corner(obj->mesh, (RtMeshCorner){indices[VERTEX], indices[NORMAL]});
+        if (at == end) {
+            const RtMeshCorner corner = {indices[VERTEX], indices[NORMAL], indices[TEXTURE]};
+            return rt_mesh_add_corner(obj->mesh, corner);
+        }
         part.text = at + 1;
     }
     return rt_scan_fail(&obj->mesh->text, word, "v, v/vt, v//vn or v/vt/vn");
@@ -137,13 +153,48 @@ static RtStatus read_face(Obj *obj) {
     return rt_mesh_add_polygon(obj->mesh);
 }
 
+/* Takes what is left of the line, blanks in it included. */
+static RtWord take_line(RtScanner *text) {
+    RtWord line = {.text = text->at};
+    while (*line.text == ' ' || *line.text == '\t') line.text++;
+    line.length = strcspn(line.text, "\r\n");
+    text->at = line.text + line.length;
+    while (line.length > 0 && strchr(" \t", line.text[line.length - 1])) line.length--;
+    return line;
+}
+
+/* Reads the materials, unless the scene gives the mesh a texture. */
+static RtStatus read_library(Obj *obj) {
+    RtMeshReader *r = obj->mesh;
+    const RtMaterial plain = r->scene->materials[obj->plain];
+    const RtWord name = take_line(&r->text);
+    if (plain.texture.kind != RT_TEXTURE_NONE) return RT_OK;
+    RT_TRY(rt_mesh_read_mtl(r, name, &plain));
+    if (r->textured && obj->textures > r->uv_count)
+        RT_TRY(rt_mesh_warn(r, "mtllib stands behind texture coordinates: its images are left out"));
+    r->textured = r->textured && obj->textures == r->uv_count;
+    return RT_OK;
+}
+
+/* Only those with an image are in the scene. */
+static void use_material(Obj *obj) {
+    RtMeshReader *r = obj->mesh;
+    const RtWord line = take_line(&r->text);
+    char name[RT_MAX_NAME];
+    snprintf(name, sizeof name, "%.*s", (int)(line.length < RT_MAX_NAME ? line.length : RT_MAX_NAME),
+             line.text);
+    r->material = obj->plain;
+    for (uint32_t i = obj->own; i < r->scene->material_count && r->textured; i++)
+        if (strcmp(r->scene->materials[i].name, name) == 0) r->material = i;
+}
+
 static bool is_among(RtWord word, const char *const *names) {
     while (*names && !rt_scan_is(word, *names)) names++;
     return *names != NULL;
 }
 
 static RtStatus read_statement(Obj *obj, RtWord word) {
-    static const char *const names[] = {"o", "g", "usemtl", "mtllib", "usemap", "maplib", NULL};
+    static const char *const names[] = {"o", "g", "usemap", "maplib", NULL};
     static const char *const unused[] = {"s", "mg", "lod", "bevel", "c_interp", "d_interp", "vp", NULL};
     static const char *const lines[] = {"p", "l", NULL};
     static const char *const curved[] = {"cstype", "deg",  "bmat",  "step",       "curv",      "curv2",
@@ -155,6 +206,11 @@ static RtStatus read_statement(Obj *obj, RtWord word) {
     if (rt_scan_is(word, "vn")) return read_listed(obj, NORMAL);
     if (rt_scan_is(word, "vt")) return read_listed(obj, TEXTURE);
     if (rt_scan_is(word, "f") || rt_scan_is(word, "fo")) return read_face(obj);
+    if (rt_scan_is(word, "mtllib")) return read_library(obj);
+    if (rt_scan_is(word, "usemtl")) {
+        use_material(obj);
+        return RT_OK;
+    }
     if (is_among(word, lines))
         RT_TRY(rt_mesh_warn(r, "points and lines are left out"));
     else if (is_among(word, curved))
@@ -170,7 +226,7 @@ static RtStatus read_statement(Obj *obj, RtWord word) {
 }
 
 RtStatus rt_mesh_read_obj(RtMeshReader *r) {
-    Obj obj = {.mesh = r};
+    Obj obj = {.mesh = r, .plain = r->material, .own = r->scene->material_count};
     r->text.joins = true;
     r->given_back = r->text.at;
     RT_TRY(rt_mesh_begin_text(r));

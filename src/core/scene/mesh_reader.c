@@ -38,6 +38,13 @@ RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal) {
                      r->text.error);
 }
 
+RtStatus rt_mesh_add_uv(RtMeshReader *r, RtUv uv) {
+    if (!r->textured) return RT_OK;
+    if (!isfinite(uv.u) || !isfinite(uv.v))
+        RT_TRY(rt_mesh_warn(r, "texture coordinates are not finite: their triangles go without"));
+    return rt_append(&r->uvs, &r->uv_count, &r->uv_capacity, &uv, sizeof uv, r->text.error);
+}
+
 RtStatus rt_mesh_add_corner(RtMeshReader *r, RtMeshCorner corner) {
     if (!rt_finite(r->vertices[corner.vertex]))
         return rt_mesh_fail(
@@ -52,7 +59,9 @@ RtStatus rt_mesh_add_index(RtMeshReader *r, double index) {
         return rt_mesh_fail(r, "face %u names vertex %.15g, but there are %u vertices (all counted from 0)",
                             r->face_count, index, r->vertex_count);
     const uint32_t vertex = (uint32_t)index;
-    return rt_mesh_add_corner(r, (RtMeshCorner){vertex, r->normal_count ? vertex : RT_NO_NORMAL});
+    const RtMeshCorner corner = {vertex, r->normal_count ? vertex : RT_MESH_NONE,
+                                 r->uv_count ? vertex : RT_MESH_NONE};
+    return rt_mesh_add_corner(r, corner);
 }
 
 /* ---- polygons ---- */
@@ -67,16 +76,19 @@ static RtStatus add_triangle(RtMeshReader *r, const RtMeshCorner corners[3]) {
     RtVec3 vertices[3], normals[3];
     const bool mirror = rt_mesh_is_mirror(&r->transform);
     bool has_normals = true;
+    RtUv uv[3];
     for (int i = 0; i < 3; i++) {
         const RtMeshCorner corner = corners[mirror ? 2 - i : i];
         vertices[i] = r->vertices[corner.vertex];
-        has_normals = has_normals && corner.normal != RT_NO_NORMAL;
+        uv[i] = corner.uv < r->uv_count ? r->uvs[corner.uv] : (RtUv){NAN, NAN};
+        has_normals = has_normals && corner.normal != RT_MESH_NONE;
         if (!has_normals) continue;
         normals[i] = r->normals[corner.normal];
         has_normals = rt_finite(normals[i]) && rt_lengthd(rt_widen(normals[i])) > 0;
     }
     const RtStatus status =
         rt_scene_add_triangle(r->scene, r->material, vertices, has_normals ? normals : NULL, r->text.error);
+    if (status == RT_OK && r->textured) return rt_scene_set_triangle_texture(r->scene, uv, r->text.error);
     if (status == RT_OK) return RT_OK;
     char face[48];
     snprintf(face, sizeof face, "face %u (counted from 0): ", r->face_count);

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 
 #include <assert.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Keeps the state on the stack, so that no allocation can fail. */
@@ -35,6 +36,16 @@ static RtStatus check_range(const char *material, const char *what, float value,
                    (double)value, (double)lo, (double)hi);
 }
 
+static RtStatus check_texture(const char *material, const RtTexture *texture, RtError *error) {
+    if (texture->kind == RT_TEXTURE_NONE) return RT_OK;
+    for (int channel = 0; channel < 3; channel++)
+        RT_TRY(check_range(material, "a colour of the checker", texture->color.at[channel], 0, 1e6f, error));
+    if (!rt_finite(texture->origin))
+        return rt_fail(error, RT_BAD_INPUT, "material '%s': the origin of its texture is not finite",
+                       material);
+    return check_range(material, "the size of the texture", texture->size, 1e-6f, 1e6f, error);
+}
+
 RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint32_t *index, RtError *error) {
     const RtMaterial *m = material;
     const float color_max = 1e6f;
@@ -48,9 +59,25 @@ RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint3
     RT_TRY(check_range(m->name, "reflection", m->reflection, 0, 1, error));
     RT_TRY(check_range(m->name, "transmission", m->transmission, 0, 1, error));
     RT_TRY(check_range(m->name, "ior", m->ior, 1e-3f, 1e3f, error));
+    RT_TRY(check_texture(m->name, &m->texture, error));
     *index = scene->material_count;
-    return rt_append(&scene->materials, &scene->material_count, &scene->material_capacity, material,
-                     sizeof *material, error);
+    RT_TRY(rt_append(&scene->materials, &scene->material_count, &scene->material_capacity, material,
+                     sizeof *material, error));
+    rt_texels_share(m->texture.texels);
+    return RT_OK;
+}
+
+RtStatus rt_scene_load_texels(const RtScene *scene, const char *path, RtTexels **texels, RtError *error) {
+    char absolute[RT_MAX_PATH];
+    const bool found = realpath(path, absolute);
+    for (uint32_t i = 0; i < scene->material_count && found; i++) {
+        *texels = scene->materials[i].texture.texels;
+        if (!*texels || strcmp((*texels)->path, absolute) != 0) continue;
+        rt_texels_share(*texels);
+        return RT_OK;
+    }
+    *texels = NULL;
+    return rt_texels_load(path, texels, error);
 }
 
 RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, RtError *error) {
@@ -96,6 +123,30 @@ RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float
                            float apex_radius, RtError *error) {
     RT_TRY(reserve_material_of(scene, material, error));
     return rt_geometry_add_cone(&scene->geometry, base, base_radius, apex, apex_radius, error);
+}
+
+RtStatus rt_scene_set_triangle_texture(RtScene *scene, const RtUv at[3], RtError *error) {
+    const uint32_t material = scene->material_of[scene->geometry.object_count - 1];
+    RtTriangleTexture texture = {.triangle = scene->geometry.triangle_count - 1};
+    bool finite = true;
+    memcpy(texture.at, at, sizeof texture.at);
+    for (int i = 0; i < 3; i++) finite = finite && isfinite(at[i].u) && isfinite(at[i].v);
+    if (scene->materials[material].texture.kind == RT_TEXTURE_NONE || !finite) return RT_OK;
+    return rt_append(&scene->triangle_textures, &scene->triangle_texture_count,
+                     &scene->triangle_texture_capacity, &texture, sizeof texture, error);
+}
+
+static int by_triangle(const void *a, const void *b) {
+    const uint32_t first = ((const RtTriangleTexture *)a)->triangle,
+                   second = ((const RtTriangleTexture *)b)->triangle;
+    return (first > second) - (first < second);
+}
+
+const RtTriangleTexture *rt_scene_triangle_texture(const RtScene *scene, uint32_t index) {
+    const RtTriangleTexture wanted = {.triangle = index};
+    if (scene->triangle_texture_count == 0) return NULL;
+    return bsearch(&wanted, scene->triangle_textures, scene->triangle_texture_count, sizeof wanted,
+                   by_triangle);
 }
 
 /* The tree just added has the material of its first solid. */
@@ -152,6 +203,9 @@ static void place_camera(RtCamera *camera, const RtBox *box) {
 RtStatus rt_scene_finish(RtScene *scene, RtError *error) {
     rt_trim(&scene->material_of, scene->geometry.object_count, &scene->material_of_capacity,
             sizeof(uint32_t));
+    if (scene->triangle_textures)
+        rt_trim(&scene->triangle_textures, scene->triangle_texture_count, &scene->triangle_texture_capacity,
+                sizeof(RtTriangleTexture));
     RT_TRY(rt_geometry_finish(&scene->geometry, error));
     RtCamera *camera = &scene->camera;
     const RtVec3 from = camera->from, at = camera->at;
@@ -180,6 +234,7 @@ typedef struct Append {
     double scale;                 /* the uniform scale, 0 if uneven */
     uint32_t *materials;          /* [from->material_count] index in `to` */
     RtVec3 *vertices;             /* [from->geometry.polygon_vertex_count] moved */
+    bool textures;                /* keep them */
     RtError *error;
 } Append;
 
@@ -217,8 +272,10 @@ static RtStatus append_triangle(const Append *a, uint32_t material, uint32_t ind
         RtVec3 n = g->vertex_normals[entry].n[i];
         normals[i] = a->transform ? rt_transform_normal(a->transform, n) : n;
     }
-    return rt_scene_add_triangle(a->to, material, vertices, entry == RT_NO_NORMALS ? NULL : normals,
-                                 a->error);
+    RT_TRY(
+        rt_scene_add_triangle(a->to, material, vertices, entry == RT_NO_NORMALS ? NULL : normals, a->error));
+    const RtTriangleTexture *texture = rt_scene_triangle_texture(a->from, index);
+    return texture ? rt_scene_set_triangle_texture(a->to, texture->at, a->error) : RT_OK;
 }
 
 static RtStatus append_csg(const Append *a, const RtCsg *tree) {
@@ -251,19 +308,20 @@ static RtStatus append_object(const Append *a, uint32_t id) {
 
 static RtStatus append_materials(const Append *a) {
     for (uint32_t i = 0; i < a->from->material_count; i++) {
-        const RtMaterial *material = &a->from->materials[i];
+        RtMaterial material = a->from->materials[i];
+        if (!a->textures) material.texture = (RtTexture){0};
         uint32_t known = 0;
-        while (known < a->to->material_count && strcmp(a->to->materials[known].name, material->name) != 0)
+        while (known < a->to->material_count && strcmp(a->to->materials[known].name, material.name) != 0)
             known++;
         a->materials[i] = known;
         if (known == a->to->material_count ||
-            memcmp(&a->to->materials[known], material, sizeof *material) != 0)
-            RT_TRY(rt_scene_add_material(a->to, material, &a->materials[i], a->error));
+            memcmp(&a->to->materials[known], &material, sizeof material) != 0)
+            RT_TRY(rt_scene_add_material(a->to, &material, &a->materials[i], a->error));
     }
     return RT_OK;
 }
 
-/* The objects ids[0..count), or with NULL the first `count`. */
+/* The objects ids[0..count), or with NULL the first `count`, and textures. */
 static RtStatus append(RtScene *to, const RtScene *from, const uint32_t *ids, uint32_t count,
                        const RtTransform *transform, RtError *error) {
     RT_ARENA(memory);
@@ -274,6 +332,7 @@ static RtStatus append(RtScene *to, const RtScene *from, const uint32_t *ids, ui
                       .scale = transform ? rt_transform_uniform_scale(transform) : 1,
                       .materials = rt_arena_alloc(&memory, from->material_count, sizeof(uint32_t)),
                       .vertices = rt_arena_alloc(&memory, g->polygon_vertex_count, sizeof(RtVec3)),
+                      .textures = !ids,
                       .error = error};
     RT_TRY(rt_arena_check(&memory, "appending a scene", error));
     RT_TRY(append_materials(&a));
@@ -314,7 +373,10 @@ RtStatus rt_scene_subset(const RtScene *from, const uint32_t *ids, uint32_t coun
 /* The bytes of these are hashed, so they have no padding. */
 _Static_assert(sizeof(RtSphere) == 4 * sizeof(float), "a sphere has no padding");
 _Static_assert(sizeof(RtCone) == 8 * sizeof(float) + 8 * sizeof(double), "a cone has no padding");
-_Static_assert(sizeof(RtMaterial) == RT_MAX_NAME + 10 * sizeof(float), "a material has no padding");
+_Static_assert(sizeof(RtMaterial) == RT_MAX_NAME + 10 * sizeof(float) + sizeof(RtTexture) &&
+                   sizeof(RtTexture) == sizeof(RtTexels *) + 8 * sizeof(float),
+               "a material has no padding");
+_Static_assert(sizeof(RtTriangleTexture) == 7 * sizeof(float), "texture coordinates have no padding");
 _Static_assert(sizeof(RtLight) == 6 * sizeof(float), "a light has no padding");
 _Static_assert(sizeof(RtCamera) == 11 * sizeof(float) + 2 * sizeof(uint32_t), "a camera has no padding");
 
@@ -343,6 +405,17 @@ static void add_forest(XXH3_state_t *state, const RtCsgForest *forest) {
     }
 }
 
+/* Nothing, for a material without one. */
+static void add_texture(XXH3_state_t *state, const RtTexture *texture) {
+    const RtTexels *texels = texture->texels;
+    if (texture->kind == RT_TEXTURE_NONE) return;
+    XXH3_64bits_update(state, &texture->kind, sizeof *texture - offsetof(RtTexture, kind));
+    if (!texels) return;
+    const uint32_t sides[2] = {texels->width, texels->height};
+    ADD(sides, 2);
+    ADD(texels->rgb, 3 * (size_t)texels->width * texels->height);
+}
+
 uint64_t rt_scene_fingerprint(const RtScene *scene) {
     const RtGeometry *g = &scene->geometry;
     XXH3_state_t whole, *state = &whole;
@@ -359,9 +432,11 @@ uint64_t rt_scene_fingerprint(const RtScene *scene) {
     /* Which triangles they belong to, unless all have some. */
     bool some = g->vertex_normal_count > 0 && g->vertex_normal_count < g->triangle_count;
     if (some) ADD(g->triangle_normals, g->triangle_count);
+    ADD(scene->triangle_textures, scene->triangle_texture_count);
     for (uint32_t i = 0; i < scene->material_count; i++) { /* all but the name */
         XXH3_64bits_update(state, &scene->materials[i].color,
-                           sizeof(RtMaterial) - offsetof(RtMaterial, color));
+                           offsetof(RtMaterial, texture) - offsetof(RtMaterial, color));
+        add_texture(state, &scene->materials[i].texture);
     }
     ADD(scene->lights, scene->light_count);
     ADD(&scene->ambient, 1);
@@ -372,15 +447,24 @@ uint64_t rt_scene_fingerprint(const RtScene *scene) {
 #undef ADD
 
 uint64_t rt_scene_bytes(const RtScene *scene) {
-    return rt_geometry_bytes(&scene->geometry) + (uint64_t)scene->material_of_capacity * sizeof(uint32_t) +
+    uint64_t texels = 0;
+    for (uint32_t i = 0; i < scene->material_count; i++) {
+        const RtTexels *image = scene->materials[i].texture.texels;
+        if (image) texels += 3 * (uint64_t)image->width * image->height;
+    }
+    return texels + (uint64_t)scene->triangle_texture_capacity * sizeof(RtTriangleTexture) +
+           rt_geometry_bytes(&scene->geometry) + (uint64_t)scene->material_of_capacity * sizeof(uint32_t) +
            (uint64_t)scene->material_capacity * sizeof(RtMaterial) +
            (uint64_t)scene->light_capacity * sizeof(RtLight);
 }
 
 void rt_scene_clear(RtScene *scene) {
     rt_geometry_clear(&scene->geometry);
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        rt_texels_release(scene->materials[i].texture.texels);
     rt_free(scene->material_of);
     rt_free(scene->materials);
+    rt_free(scene->triangle_textures);
     rt_free(scene->lights);
     rt_warnings_clear(&scene->warnings);
     *scene = (RtScene){0};

@@ -8,6 +8,7 @@
 
 #include "core/base/warnings.h"
 #include "core/scene/camera.h"
+#include "core/scene/texture.h"
 #include "core/shape/geometry.h"
 
 #define RT_MAX_NAME       64
@@ -15,7 +16,7 @@
 
 /* The coefficients of the standard illumination model:
  *   I = ka Ia + sum over lights of S (kd (N.L) + ks (R.V)^shine) + kt It + kr Ir
- * ka and kd act on `color`; ks, kt and kr are white. */
+ * ka and kd act on `color`, or the texture's; ks, kt and kr are white. */
 typedef struct RtMaterial {
     char name[RT_MAX_NAME];
     RtVec3 color;       /* linear rgb, usually 0..1 */
@@ -27,6 +28,7 @@ typedef struct RtMaterial {
     float transmission; /* kt in 0..1; above 0 spawns a transmission ray, or its total internal reflection */
     float ior;          /* index of refraction, > 0, of the inside (behind the normal) relative to the
                          * outside */
+    RtTexture texture;  /* a zeroed struct: none */
 } RtMaterial;
 
 /* A point light. */
@@ -35,6 +37,17 @@ typedef struct RtLight {
     RtVec3 intensity; /* linear rgb */
 } RtLight;
 
+/* Texture coordinates. */
+typedef struct RtUv {
+    float u, v;
+} RtUv;
+
+/* Those of the vertices of a triangle. */
+typedef struct RtTriangleTexture {
+    uint32_t triangle; /* its index in geometry.triangles */
+    RtUv at[3];
+} RtTriangleTexture;
+
 typedef struct RtScene {
     char name[RT_MAX_SCENE_NAME];
     RtGeometry geometry;
@@ -42,6 +55,8 @@ typedef struct RtScene {
     uint32_t *material_of; /* [geometry.object_count] index into materials; a tree's solids have their own */
     uint32_t material_count, material_capacity;
     RtMaterial *materials;
+    uint32_t triangle_texture_count, triangle_texture_capacity;
+    RtTriangleTexture *triangle_textures; /* [triangle_texture_count] ascending by triangle */
     uint32_t light_count, light_capacity;
     RtLight *lights;
     RtVec3 ambient;    /* Ia */
@@ -61,8 +76,12 @@ void rt_scene_init(RtScene *scene);
 /* Matte grey: ka .1, kd .9. */
 RtMaterial rt_default_material(void);
 
-/* Appends a material and returns its index; rejects values out of range. */
+/* Appends a material, as one more user of its texels, and returns its index; rejects values out of range. */
 RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint32_t *index, RtError *error);
+
+/* Gets the texels of the image at `path`: a material's of the scene, or those of the file (rt_texels_load).
+ * The caller is one of their users. */
+RtStatus rt_scene_load_texels(const RtScene *scene, const char *path, RtTexels **texels, RtError *error);
 
 RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, RtError *error);
 
@@ -74,6 +93,13 @@ RtStatus rt_scene_add_triangle(RtScene *scene, uint32_t material, const RtVec3 v
                                const RtVec3 *normals, RtError *error);
 RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float base_radius, RtVec3 apex,
                            float apex_radius, RtError *error);
+
+/* Sets the texture coordinates of the triangle added last, if its material has a texture and they are finite.
+ */
+RtStatus rt_scene_set_triangle_texture(RtScene *scene, const RtUv at[3], RtError *error);
+
+/* The texture coordinates of triangle `index` of the geometry; NULL if it has none. */
+const RtTriangleTexture *rt_scene_triangle_texture(const RtScene *scene, uint32_t index);
 
 /* Adds the tree below `root`; the materials of its solids are indices of this scene. The object has the
  * material of its first solid. */
@@ -93,18 +119,18 @@ RtStatus rt_scene_sample(RtScene *scene, uint32_t width, uint32_t height, uint32
 
 /* Appends the objects of `from` in order, moved by `transform` (NULL: in place), with their materials; a
  * material that `to` already has, name included, is shared. Lights and camera are not copied. Spheres and
- * cones are rejected under a transform that scales unevenly; CSG trees accept any. After a failure `to`
- * may contain some of the objects. */
+ * cones are rejected under a transform that scales unevenly; CSG trees accept any. The origins of textures do
+ * not move. After a failure `to` may contain some of the objects. */
 RtStatus rt_scene_append(RtScene *to, const RtScene *from, const RtTransform *transform, RtError *error);
 
 /* Creates the finished scene *to from the objects ids[0..count) of the finished scene `from`, in that
- * order, with its lights, camera and sampling. The caller owns it. Its hits are those of `from`, bit for
- * bit. */
+ * order, with its lights, camera and sampling, without textures, so that it can be saved without their files.
+ * The caller owns it. Its hits are those of `from`, bit for bit. */
 RtStatus rt_scene_subset(const RtScene *from, const uint32_t *ids, uint32_t count, RtScene *to,
                          RtError *error);
 
-/* A hash of everything that can change an answer or a picture (geometry, materials, lights, camera; not
- * the sampling). It allocates nothing, so it cannot fail. */
+/* A hash of everything that can change an answer or a picture (geometry, materials, texels, lights,
+ * camera; not the sampling). It allocates nothing, so it cannot fail. */
 uint64_t rt_scene_fingerprint(const RtScene *scene);
 
 /* Bytes of memory that the scene holds. */

@@ -172,17 +172,23 @@ static RtStatus read_cone(const RtYaml *y, const RtYamlNode *n, RtCone *cone) {
     return rt_yaml_float(y, n, cylinder ? "radius" : "apex_radius", &cone->apex_radius);
 }
 
+/* The path of a file that the scene names as `key`, relative to the scene's own. */
+static RtStatus get_path(Reader *r, const RtYamlNode *n, const char *key, char path[RT_MAX_PATH]) {
+    char folder[RT_MAX_PATH];
+    const char *name = "";
+    RT_TRY(rt_yaml_text(&r->yaml, n, key, RT_MAX_PATH - 1, &name));
+    rt_path_folder(r->yaml.path, folder);
+    return rt_yaml_place(&r->yaml, rt_path_join(folder, name, path, r->error), n, key);
+}
+
 /* Adds the triangles of the file at the `path` of an object to `scene`, moved by its `transform`. */
 static RtStatus append_mesh(Reader *r, const RtYamlNode *object, uint32_t material, RtScene *scene) {
     RtTransform transform;
     const RtTransform *given;
-    char folder[RT_MAX_PATH], path[RT_MAX_PATH];
-    const char *name = "";
+    char path[RT_MAX_PATH];
     RT_TRY(read_transform(r, object, nowhere, &transform, &given));
-    RT_TRY(rt_yaml_text(&r->yaml, object, "path", RT_MAX_PATH - 1, &name));
-    rt_path_folder(r->yaml.path, folder);
-    RtStatus status = rt_path_join(folder, name, path, r->error);
-    if (status == RT_OK) status = rt_mesh_append(scene, path, material, given, r->error);
+    RT_TRY(get_path(r, object, "path", path));
+    RtStatus status = rt_mesh_append(scene, path, material, given, r->error);
     return rt_yaml_place(&r->yaml, status, object, "path");
 }
 
@@ -190,20 +196,41 @@ static RtStatus append_mesh(Reader *r, const RtYamlNode *object, uint32_t materi
 
 #define OPTIONAL_KEY(key) #key "? "
 
+/* The caller releases its texels. */
+static RtStatus read_texture(Reader *r, const RtYamlNode *n, RtTexture *texture) {
+    const RtYaml *y = &r->yaml;
+    const bool image = rt_yaml_get(y, n, "image");
+    char path[RT_MAX_PATH];
+    *texture = (RtTexture){.kind = image ? RT_TEXTURE_IMAGE : RT_TEXTURE_CHECKER,
+                           .size = 1,
+                           .origin = rt_narrow(rt_subd(nowhere, r->scene->offset))};
+    RT_TRY(rt_yaml_keys(y, n, image ? "image size? origin?" : "checker color? origin?"));
+    RT_TRY(rt_yaml_float(y, n, image ? "size" : "checker", &texture->size));
+    RT_TRY(rt_yaml_point(y, n, "color", &texture->color));
+    RT_TRY(rt_yaml_position(y, n, "origin", &texture->origin));
+    if (!image) return RT_OK;
+    RT_TRY(get_path(r, n, "image", path));
+    return rt_yaml_place(y, rt_scene_load_texels(r->scene, path, &texture->texels, r->error), n, "image");
+}
+
 static RtStatus add_material(Reader *r, const RtYamlNode *n) {
     RtMaterial material = rt_default_material();
+    const RtYamlNode *texture = rt_yaml_get(&r->yaml, n, "texture");
     uint32_t index;
     RT_TRY(rt_yaml_copy(&r->yaml, n, "name", sizeof material.name, material.name));
     RT_TRY(rt_yaml_point(&r->yaml, n, "color", &material.color));
 #define READ(name) RT_TRY(rt_yaml_float(&r->yaml, n, #name, &material.name));
     RT_YAML_COEFFICIENTS(READ)
 #undef READ
-    return rt_yaml_place(&r->yaml, rt_scene_add_material(r->scene, &material, &index, r->error), n, NULL);
+    if (texture) RT_TRY(read_texture(r, texture, &material.texture));
+    RtStatus status = rt_scene_add_material(r->scene, &material, &index, r->error);
+    rt_texels_release(material.texture.texels);
+    return rt_yaml_place(&r->yaml, status, n, NULL);
 }
 
 static RtStatus add_materials(Reader *r, const RtYamlNode *list) {
     assert(r->scene->material_count == 0);
-    RT_TRY(read_names(r, list, "name color? " RT_YAML_COEFFICIENTS(OPTIONAL_KEY), RT_MAX_NAME - 1,
+    RT_TRY(read_names(r, list, "name color? texture? " RT_YAML_COEFFICIENTS(OPTIONAL_KEY), RT_MAX_NAME - 1,
                       "materials", &r->materials));
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size)
         RT_TRY(add_material(r, n));
@@ -512,14 +539,28 @@ static RtStatus read_points(const RtYaml *y, const RtYamlNode *list, bool normal
     return RT_OK;
 }
 
+/* Texture coordinates. */
+static RtStatus read_corners(const RtYaml *y, const RtYamlNode *list, RtUv at[3]) {
+    RT_TRY(rt_yaml_list(y, list, NULL, 3, 3, "pairs of numbers, as in [0, 1]"));
+    for (const RtYamlNode *p = rt_yaml_first(list); p != rt_yaml_end(list); p += p->size, at++) {
+        RT_TRY(rt_yaml_list(y, p, NULL, 2, 2, "numbers, as in [0, 1]"));
+        RT_TRY(rt_yaml_float(y, p + 1, NULL, &at->u));
+        RT_TRY(rt_yaml_float(y, p + 2, NULL, &at->v));
+    }
+    return RT_OK;
+}
+
 static RtStatus object_triangle(Reader *r, const RtYamlNode *n, uint32_t material) {
     const RtYaml *y = &r->yaml;
     RtVec3 v[3] = {{0}}, at_vertices[3] = {{0}};
-    RT_TRY(rt_yaml_keys(y, n, "vertices normals? material?"));
-    const RtYamlNode *normals = rt_yaml_get(y, n, "normals");
+    RtUv corners[3] = {{0}};
+    RT_TRY(rt_yaml_keys(y, n, "vertices normals? uv? material?"));
+    const RtYamlNode *normals = rt_yaml_get(y, n, "normals"), *uv = rt_yaml_get(y, n, "uv");
     RT_TRY(read_points(y, rt_yaml_get(y, n, "vertices"), false, v));
     RT_TRY(read_points(y, normals, true, at_vertices));
+    RT_TRY(read_corners(y, uv, corners));
     RtStatus status = rt_scene_add_triangle(r->scene, material, v, normals ? at_vertices : NULL, r->error);
+    if (status == RT_OK && uv) status = rt_scene_set_triangle_texture(r->scene, corners, r->error);
     return rt_yaml_place(y, status, n, NULL);
 }
 

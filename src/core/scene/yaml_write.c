@@ -63,8 +63,8 @@ static void points_key(Writer *w, const char *key, const RtVec3 *p, uint32_t cou
     rows(w, p, count, 3, false);
 }
 
-/* Inside single quotes only quotes need escaping. */
-static void quote(const char *name, char out[2 * RT_MAX_NAME + 2]) {
+/* Writes to out[0..2 * strlen(name) + 3). Inside single quotes only quotes need escaping. */
+static void quote(const char *name, char *out) {
     *out++ = '\'';
     for (; *name; name++) {
         if (*name == '\'') *out++ = '\'';
@@ -102,6 +102,21 @@ static void write_lights(Writer *w) {
     }
 }
 
+static void write_texture(Writer *w, const RtTexture *texture) {
+    char path[2 * RT_MAX_PATH + 2];
+    if (texture->kind == RT_TEXTURE_NONE) return;
+    if (texture->texels) {
+        quote(texture->texels->path, path);
+        fprintf(w->out, ", texture: {image: %s", path);
+        number_key(w, ", size: ", texture->size);
+    } else {
+        number_key(w, ", texture: {checker: ", texture->size);
+        point_key(w, ", color: ", texture->color);
+    }
+    point_key(w, ", origin: ", texture->origin);
+    fputc('}', w->out);
+}
+
 static void write_materials(Writer *w) {
     fputs("materials:\n", w->out);
     for (uint32_t i = 0; i < w->scene->material_count; i++) {
@@ -111,6 +126,7 @@ static void write_materials(Writer *w) {
 #define WRITE(key) number_key(w, ", " #key ": ", m->key);
         RT_YAML_COEFFICIENTS(WRITE)
 #undef WRITE
+        write_texture(w, &m->texture);
         fputs("}\n", w->out);
     }
 }
@@ -154,6 +170,7 @@ static RtStatus write_csg(Writer *w, const RtCsg *tree, RtError *error) {
 
 static RtStatus write_shape(Writer *w, RtShape shape, uint32_t index, RtError *error) {
     const RtGeometry *g = &w->scene->geometry;
+    const RtTriangleTexture *texture;
     switch (shape) {
     case RT_SHAPE_SPHERE:
         point_key(w, "center: ", g->spheres[index].center);
@@ -166,6 +183,9 @@ static RtStatus write_shape(Writer *w, RtShape shape, uint32_t index, RtError *e
         points_key(w, "vertices: ", g->triangles[index].v, 3);
         if (g->triangle_normals && g->triangle_normals[index] != RT_NO_NORMALS)
             points_key(w, ", normals: ", g->vertex_normals[g->triangle_normals[index]].n, 3);
+        if (!(texture = rt_scene_triangle_texture(w->scene, index))) break;
+        fputs(", uv: ", w->out);
+        rows(w, texture->at, 3, 2, false);
         break;
     case RT_SHAPE_CONE:
         point_key(w, "base: ", g->cones[index].base);

@@ -132,6 +132,9 @@ typedef struct RtNormals {
 RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
                             RtCrossing *crossings);
 
+/* Barycentric weights of v[0], v[1], v[2] at `point` in the plane of the triangle; they sum to 1. */
+RtVec3d rt_triangle_weights(const RtTriangle *triangle, RtVec3d point);
+
 /* Extents of object `id`: its box, which geometry->boxes[id] is; a ball; and the support function, which is
  * the largest dot product with `direction` (for slabs and oriented boxes). */
 RtBox rt_object_box(const RtGeometry *geometry, uint32_t id);

@@ -234,8 +234,7 @@ static RtVec3d cone_normal(const RtCone *cone, RtVec3d point) {
     return rt_normalized(rt_add_scaledd(outward, cone->axis, -cone->slope));
 }
 
-/* Barycentric weights of v[0], v[1], v[2] at `point` in the plane of the triangle; they sum to 1. */
-static RtVec3d weights_at(const RtTriangle *triangle, RtVec3d point) {
+RtVec3d rt_triangle_weights(const RtTriangle *triangle, RtVec3d point) {
     RtVec3d a = rt_widen(triangle->v[0]), b = rt_widen(triangle->v[1]), c = rt_widen(triangle->v[2]);
     RtVec3d whole = rt_area_vector(a, b, c);
     double ww = rt_dotd(whole, whole);
@@ -249,7 +248,7 @@ static RtVec3d interpolated_normal(const RtGeometry *g, uint32_t index, RtVec3d 
     uint32_t entry = g->triangle_normals ? g->triangle_normals[index] : RT_NO_NORMALS;
     if (entry == RT_NO_NORMALS) return geometric;
     const RtVec3 *n = g->vertex_normals[entry].n;
-    RtVec3d w = weights_at(&g->triangles[index], point);
+    RtVec3d w = rt_triangle_weights(&g->triangles[index], point);
     RtVec3d sum = rt_scaled(rt_widen(n[0]), w.x);
     sum = rt_add_scaledd(sum, rt_widen(n[1]), w.y);
     sum = rt_add_scaledd(sum, rt_widen(n[2]), w.z);
