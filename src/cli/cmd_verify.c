@@ -149,7 +149,7 @@ static RtStatus add_triangles(Options *o, RtError *error) {
     RT_TRY(add_default(o, error));
     for (uint32_t i = kept; i < o->work.scene_count; i++) {
         RtScene scene;
-        RT_TRY(rt_cli_open_scene(o->scenes[i], &scene, error));
+        RT_TRY(rt_scene_open(o->scenes[i], &scene, error));
         if (scene.geometry.triangle_count == scene.geometry.object_count) o->scenes[kept++] = o->scenes[i];
         rt_scene_clear(&scene);
     }

@@ -165,10 +165,11 @@ static RtStatus read_property(File *file) {
 
 /* Inside an element it may be a property, without which all others are read wrongly. */
 static RtStatus left_out_line(const File *file, RtWord word) {
+    char shown[RT_WORD_SHOWN];
     if (file->element_count > 0)
         return rt_scan_fail(&file->mesh->text, word, "property, element, comment, obj_info or end_header");
-    return rt_mesh_warn(file->mesh, "a line of the header that is not PLY's is left out: '%.*s'",
-                        (int)(word.length < 40 ? word.length : 40), word.text);
+    return rt_mesh_warn(file->mesh, "a line of the header that is not PLY's is left out: %s",
+                        rt_scan_show(word, shown));
 }
 
 static RtStatus read_header_line(File *file, RtWord word) {

@@ -202,6 +202,7 @@ static RtStatus read_statement(Obj *obj, RtWord word) {
                                          "end",    "con",  "ctech", "stech",      "bsp",       "bzp",
                                          "cdc",    "cdp",  "res",   "shadow_obj", "trace_obj", NULL};
     RtMeshReader *r = obj->mesh;
+    char shown[RT_WORD_SHOWN];
     if (rt_scan_is(word, "v")) return read_listed(obj, VERTEX);
     if (rt_scan_is(word, "vn")) return read_listed(obj, NORMAL);
     if (rt_scan_is(word, "vt")) return read_listed(obj, TEXTURE);
@@ -217,8 +218,8 @@ static RtStatus read_statement(Obj *obj, RtWord word) {
         RT_TRY(rt_mesh_warn(r, "curves and curved surfaces are left out (%.*s): export them as polygons",
                             (int)word.length, word.text));
     else if (!is_among(word, names) && !is_among(word, unused))
-        RT_TRY(rt_mesh_warn(r, "a statement that is not of meshes is left out: '%.*s'",
-                            (int)(word.length < 40 ? word.length : 40), word.text));
+        RT_TRY(
+            rt_mesh_warn(r, "a statement that is not of meshes is left out: %s", rt_scan_show(word, shown)));
     r->text.joins = !is_among(word, names); /* they may be paths of Windows, and end in a backslash */
     rt_scan_skip_line(&r->text);
     r->text.joins = true;
