@@ -34,7 +34,7 @@ offers_only() {
 
 offers 'raytally ' accels bench render
 offers_only 'raytally be' bench
-offers_only 'raytally bench --count' --count-only --counts
+offers_only 'raytally bench --count' --count-only
 offers_only 'raytally convert --r' --recentre
 offers_only 'raytally bench --worker' # hidden
 offers 'raytally bench balls --accel ' brute bvh grid octree all

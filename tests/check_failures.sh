@@ -67,7 +67,7 @@ commands=(
     "trace scene.yaml $frame --pixel 3,3 --depth 3 --json"
     "explore scene.yaml $frame -o out.html"
     "rays scene.yaml $frame --rays primary -o out.npy --threads 1"
-    "bench scene.yaml $frame --accel bvh --accel item+light+octree --rays primary,shadow --count-only --csv out.csv --counts out.npy --json --threads 1"
+    "bench scene.yaml $frame --accel bvh --accel item+light+octree --rays primary,shadow --count-only --csv out.csv --json --threads 1"
     'bench scene.yaml --accel kd --rays-from rays.npy --rays nearest --count-only --hits out.npy --threads 2'
     'verify scene.yaml --accel bvh --accel wide --rays 20 --threads 1 --out checked'
     'verify scene.yaml --rays-from rays.csv --hits-from hits.csv --wrong-rays out.npy --threads 1 --json'

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Rays, hits and counts as NumPy arrays: raytally reads NumPy's files correctly, and NumPy raytally's. Uses $RT_PROGRAM.
+# Rays and hits as NumPy arrays: raytally reads NumPy's files correctly, and NumPy raytally's. Uses $RT_PROGRAM.
 # Skipped (77) without python3 or NumPy.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
@@ -15,26 +15,9 @@ fail() {
     exit 1
 }
 
-# Several accelerators, kinds of rays and scenes: each has a file, the one that it would have alone.
-raytally bench 'balls:size=1|2' --size 16x16 --rays primary,shadow --accel bvh --accel 'grid:density=4' --accel brute \
-    --ray-stride 5 --count-only --hits all.npy --counts all-counts.npy >said
-one='bench balls:size=2 --size 16x16 --accel grid:density=4 --count-only'
-raytally $one --rays primary --hits primary.npy --counts primary-counts.npy >said
-raytally $one --rays shadow --hits shadow.npy >said
-[ "$(ls all-balls-size-[12]-{bvh,grid-density-4,brute}-{primary,shadow}.npy | wc -l)" = 12 ] || fail 'not a file for each cell'
-cmp primary-counts.npy all-counts-balls-size-2-grid-density-4-primary.npy || fail 'counts of several are others'
-python3 - <<'EOF'
-import numpy
-for kind in ["primary", "shadow"]:
-    hits = {accel: numpy.load(f"all-balls-size-2-{accel}-{kind}.npy") for accel in ("bvh", "grid-density-4", "brute")}
-    assert (hits["grid-density-4"] == numpy.load(kind + ".npy")).all()
-    assert (hits["bvh"][::5] == hits["brute"]).all()
-EOF
-
-# Through NumPy and back: the same hits and counts. Other orders and types: refused.
+# Through NumPy and back: the same hits. Other orders and types: refused.
 raytally rays balls:size=2 --size 64x64 --rays diffuse -o rays.npy >said
-raytally bench balls:size=2 --size 64x64 --rays diffuse --accel grid --count-only --json --hits h1.npy --counts c1.npy \
-    >one.json
+raytally bench balls:size=2 --size 64x64 --rays diffuse --accel grid --count-only --json --hits h1.npy >one.json
 python3 - <<'EOF'
 import numpy
 rays = numpy.load("rays.npy")
@@ -51,8 +34,8 @@ with open("version3.npy", "wb") as file:
 EOF
 given='bench balls:size=2 --rays nearest --accel grid --count-only --rays-from'
 for file in copy version2 version3; do
-    raytally $given $file.npy --hits h2.npy --counts c2.npy >said
-    cmp h1.npy h2.npy && cmp c1.npy c2.npy || fail "the rays of $file.npy are others"
+    raytally $given $file.npy --hits h2.npy >said
+    cmp h1.npy h2.npy || fail "the rays of $file.npy are others"
 done
 for file in double.npy big.npy columns.npy flat.npy; do
     code=0
@@ -61,25 +44,19 @@ for file in double.npy big.npy columns.npy flat.npy; do
 done
 python3 - <<'EOF'
 import json, numpy
-hits, counts = numpy.load("h1.npy"), numpy.load("c1.npy")
-table = json.load(open("one.json"))["rows"][0]["counts"]
-for name in counts.dtype.names:
-    assert counts[name].sum() == table[name], name
+hits, table = numpy.load("h1.npy"), json.load(open("one.json"))["rows"][0]["counts"]
 met = hits["object"] >= 0
 assert met.sum() == table["hits"] and numpy.isfinite(hits["t"][met]).all() and numpy.isinf(hits["t"][~met]).all()
 EOF
 
 # As text: the same numbers.
 raytally rays balls:size=2 --size 64x64 --rays diffuse -o rays.csv >said
-raytally $given rays.csv --hits h.csv --counts c.csv >said
+raytally $given rays.csv --hits h.csv >said
 python3 - <<'EOF'
 import numpy
-def read(path, dtype):
-    return numpy.genfromtxt(path, delimiter=",", names=True, dtype=dtype)
 assert (numpy.loadtxt("rays.csv", dtype="float32", delimiter=",", skiprows=1) == numpy.load("rays.npy")).all()
-hits, counts = numpy.load("h1.npy"), numpy.load("c1.npy")
-assert (read("h.csv", hits.dtype) == hits).all()
-assert (read("c.csv", counts.dtype) == counts).all() and read("c.csv", None).dtype.names == counts.dtype.names
+hits = numpy.load("h1.npy")
+assert (numpy.genfromtxt("h.csv", delimiter=",", names=True, dtype=hits.dtype) == hits).all()
 numpy.savetxt("h.csv", hits["t"], header="t", comments="")
 EOF
 raytally verify balls:size=2 --rays-from rays.csv --hits-from h.csv >said || fail "t as text is judged: $(cat said)"

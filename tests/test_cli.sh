@@ -113,7 +113,7 @@ for arguments in '-o full.png' '--heatmap steps full.png' '--structure full.png'
     # shellcheck disable=SC2086
     full full. render $small $arguments
 done
-for arguments in '--csv full.csv' '--hits full.npy' '--counts full.npy'; do
+for arguments in '--csv full.csv' '--hits full.npy'; do
     # shellcheck disable=SC2086
     full full. bench $small --accel bvh --rays primary --count-only $arguments
 done

@@ -246,8 +246,7 @@ RtStatus rt_cli_check_pixel(const RtSampling *sampling, RtPixel pixel, RtError *
 #define RT_RAY_OPERAND "RAY"
 #define RT_RAY_HELP                                                                                          \
     "OX,OY,OZ,DX,DY,DZ, origin and direction, and ,TMIN,TMAX if they are not 0,inf; or FILE.npy:N, row N "   \
-    "of "                                                                                                    \
-    "rays as --rays-from takes them, the first is 0"
+    "of rays as --rays-from takes them, the first is 0"
 
 /* The ray of an option with this help; of kind random, as rays from files are. RT_BAD_INPUT if it is none. */
 RtStatus rt_cli_ray(const char *text, RtRay *ray, RtError *error);
@@ -256,7 +255,7 @@ RtStatus rt_cli_ray(const char *text, RtRay *ray, RtError *error);
 RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, const char *text);
 
 #define RT_CLI_PICTURES ".png, .svg or .pdf" /* the formats of pictures */
-#define RT_CLI_ROWS     ".npy or .csv"       /* of rays, hits and counts */
+#define RT_CLI_ROWS     ".npy or .csv"       /* of rays and hits */
 
 /* For parsers: stores `path` in *slot; ends the process by argp_error if it ends in none of `extensions`, or
  * if *slot is set. */

@@ -35,9 +35,8 @@ static void set_baseline(RtExperiment *experiment, const char *text, struct argp
 
 static void check_names(const Options *o, struct argp_state *state) {
     const RtExperiment *e = &o->shared.experiment;
-    const char *const files[] = {o->workload.hits, o->workload.counts, o->csv,
-                                 *e->rays_from ? e->rays_from : NULL};
-    for (int i = 0; i < 4; i++) {
+    const char *const files[] = {o->workload.hits, o->csv, *e->rays_from ? e->rays_from : NULL};
+    for (int i = 0; i < 3; i++) {
         for (int k = 0; k < i; k++) {
             if (files[i] && files[k] && strcmp(files[i], files[k]) == 0)
                 argp_error(state, "'%s' is named twice: give each file its own name", files[i]);
@@ -109,18 +108,14 @@ static const RtOption options[] = {
     {"csv", 0, "FILE", RT_TO_TEXT(csv),
      "Also write a row per cell to FILE, in the columns of times.csv, or of counts.csv with --count-only"},
     {"hits", 0, "FILE.npy", RT_TO_PATH(workload.hits, RT_CLI_ROWS),
-     "Also write each ray's hit for NumPy, or as text to FILE.csv, a row per ray: t and object (inf and -1 "
-     "for a miss); for shadow "
-     "and occlusion rays whether the ray is blocked. Several scenes, accelerators or kinds of rays have a "
-     "file each, FILE-SCENE-ACCELERATOR-KIND.npy, without what they have in common"},
-    {"counts", 0, "FILE.npy", RT_TO_PATH(workload.counts, RT_CLI_ROWS),
-     "Also write each ray's cost, a row per ray and a field per counter; files as with --hits"},
+     "Also write each ray's hit, of one scene, accelerator and kind of rays, for NumPy, or as text to "
+     "FILE.csv, a row per ray: t and object (inf and -1 for a miss); for shadow and occlusion rays whether "
+     "the ray is blocked"},
     RT_STRICT_OPTION,
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
     {"rays-from", 0, "FILE.npy", RT_TO_TAKE(take_rays_from),
      "Measure the rays of FILE instead of recorded ones: an array of float32 of shape (N, 8), or text "
-     "(.csv), as "
-     "`raytally rays` writes it. --rays chooses the query: nearest, or occlusion (any hit)"},
+     "(.csv), as `raytally rays` writes it. --rays chooses the query: nearest, or occlusion (any hit)"},
     {0}};
 
 /* ---- the report ---- */
@@ -170,14 +165,6 @@ static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
     rt_cli_print_json(all);
 }
 
-/* `cells`: it stands for a file of each cell, if there are several. */
-static void say_written(const char *path, const RtExperiment *e, bool cells) {
-    const bool several = cells && e->workload_count * e->candidate_count * e->kind_count > 1;
-    const size_t length = path ? strlen(path) : 0;
-    if (several && path) printf("wrote %.*s-*%s\n", (int)length - 4, path, path + length - 4);
-    if (!several && path) printf("wrote %s\n", path);
-}
-
 static RtStatus report(const Options *o, const RtResults *results, const RtCallgrind *callgrind,
                        RtError *error) {
     const RtExperiment *e = results->experiment;
@@ -201,10 +188,9 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
     rt_null_sentence(results, sentence);
     if (*sentence) putchar('\n');
     if (*sentence) rt_print_wrapped(sentence, stdout);
-    if (o->csv || o->workload.hits || o->workload.counts) putchar('\n');
-    say_written(o->csv, e, false);
-    say_written(o->workload.hits, e, true);
-    say_written(o->workload.counts, e, true);
+    if (o->csv || o->workload.hits) putchar('\n');
+    if (o->csv) printf("wrote %s\n", o->csv);
+    if (o->workload.hits) printf("wrote %s\n", o->workload.hits);
     return RT_OK;
 }
 
@@ -220,7 +206,6 @@ static RtStatus check_path(const char *path, RtError *error) {
 
 static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, RtError *error) {
     RT_TRY(check_path(o->workload.hits, error));
-    RT_TRY(check_path(o->workload.counts, error));
     if (o->shared.callgrind) {
         RT_TRY(rt_callgrind_check(error));
         RT_TRY(rt_callgrind_init(callgrind, results->experiment, o->shared.callgrind, error));
@@ -244,6 +229,11 @@ static RtStatus bench(Options *o, RtError *error) {
     RT_TRY(rt_experiment_add_scenes(experiment, &o->shared.like, o->scene, "", error));
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
+    if (o->workload.hits &&
+        experiment->workload_count * experiment->candidate_count * experiment->kind_count > 1)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "--hits: give one scene, one accelerator and one kind of rays; docs/guide/python.md "
+                       "has them all");
     if (o->worker) return rt_worker_serve(experiment, NULL, error);
     RT_OWNED(RtResults, results, rt_results_clear);
     RT_OWNED(RtCallgrind, callgrind, rt_callgrind_clear);

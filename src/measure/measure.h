@@ -141,7 +141,7 @@ RtStatus rt_measure_learning(const RtAccel *accel, const RtRaySet *set, const Rt
 /* ---- files (ray_file.c) ---- */
 
 /* Ray sets as NumPy arrays, or with the extension .csv as text: rays and answers may come from any other
- * renderer, and answers and counts may go to any other program. docs/guide/own-rays.md describes the files.
+ * renderer, and go to any other program. docs/guide/own-rays.md describes the files.
  */
 
 /* Floats per row: origin, tmin, direction, tmax. */
@@ -168,8 +168,5 @@ void rt_hits_put(const RtRows *rows, const char *path, FILE *out);
  * set for a miss, and other fields, which are ignored; or an array of t, infinity for a miss, which become
  * hits of RT_UNNAMED_OBJECT. Rejects other lengths and, by its row, an object that is not in the scene. */
 RtStatus rt_hits_load(const char *path, uint64_t rays, uint32_t objects, RtHit **hits, RtError *error);
-
-/* Writes the cost of each ray likewise: a field of uint64 for each counter. */
-void rt_counts_put(const RtRows *rows, const char *path, FILE *out);
 
 #endif

@@ -197,11 +197,6 @@ static RtStatus open_array(Source *s, RtError *error) {
 
 /* ---- text: a line of names, then a line per row ---- */
 
-static bool is_text(const char *path) {
-    const size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".csv") == 0;
-}
-
 /* The next line that is not empty, without its end; false if there is none. */
 static bool read_line(FILE *file, char line[MOST_ROW]) {
     do {
@@ -266,7 +261,7 @@ static RtStatus read_words(Source *s, uint64_t row, char *bytes, RtError *error)
 
 /* Call close_rows also after a failure. */
 static RtStatus open_rows(Source *s, const char *path, const Form *form, RtError *error) {
-    *s = (Source){.path = path, .form = form, .text = is_text(path)};
+    *s = (Source){.path = path, .form = form, .text = rt_ends_in(path, ".csv")};
     RT_TRY(rt_file_open(path, &s->file, error));
     RT_TRY((s->text ? open_text : open_array)(s, error));
     if (s->rows <= RT_MAX_RAYS_A_KIND) return RT_OK;
@@ -306,7 +301,7 @@ static void begin(FILE *out, const char *descr, uint64_t rows, uint32_t columns)
 /* ---- rays ---- */
 
 RtStatus rt_rays_save(const RtRaySet *set, const char *path, RtError *error) {
-    const bool text = is_text(path);
+    const bool text = rt_ends_in(path, ".csv");
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));
     if (!text) begin(output.file, "'<f4'", set->count, RT_RAY_COLUMNS);
@@ -361,7 +356,7 @@ RtStatus rt_rays_load(const char *path, RtRayKind kind, RtRaySet *set, RtError *
     return status;
 }
 
-/* ---- answers and counts ---- */
+/* ---- hits ---- */
 
 /* The hit of a row: no object, or all bits of it set, is a miss or a t alone. */
 static RtStatus take_hit(const Source *s, uint64_t row, const char *bytes, uint32_t objects, RtHit *hit,
@@ -407,7 +402,7 @@ RtStatus rt_hits_load(const char *path, uint64_t rays, uint32_t objects, RtHit *
 }
 
 void rt_hits_put(const RtRows *rows, const char *path, FILE *out) {
-    const bool text = is_text(path);
+    const bool text = rt_ends_in(path, ".csv");
     if (text)
         fputs(rows->blocked ? "blocked\n" : "t,object\n", out);
     else
@@ -426,20 +421,5 @@ void rt_hits_put(const RtRows *rows, const char *path, FILE *out) {
         }
         fwrite(&rows->hits[i].t, sizeof(float), 1, out);
         fwrite(&object, sizeof object, 1, out);
-    }
-}
-
-void rt_counts_put(const RtRows *rows, const char *path, FILE *out) {
-    const bool text = is_text(path);
-#define FIELD(name, meaning) "('" #name "', '<u8'), "
-    if (!text) begin(out, "[" RT_TALLY_COUNTERS(FIELD) "]", rows->count, 0);
-    if (!text) fwrite(rows->tallies, sizeof(RtTally), rows->count, out);
-#undef FIELD
-    for (size_t k = 0; text && k < RT_TALLY_COUNTER_COUNT; k++)
-        fprintf(out, "%s%c", rt_tally_name(k), k + 1 < RT_TALLY_COUNTER_COUNT ? ',' : '\n');
-    for (uint64_t i = 0; text && i < rows->count; i++) {
-        for (size_t k = 0; k < RT_TALLY_COUNTER_COUNT; k++)
-            fprintf(out, "%" PRIu64 "%c", rt_tally_get(&rows->tallies[i], k),
-                    k + 1 < RT_TALLY_COUNTER_COUNT ? ',' : '\n');
     }
 }

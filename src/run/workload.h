@@ -29,13 +29,10 @@ typedef struct RtWorkloadOptions {
     int timing;      /* threads for timed builds and rays, usually those of the experiment */
     bool count_only; /* no timing */
     RtSelection only;
-    double until;    /* rounds continue until all intervals of ratios are within this part of their medians:
-                        0.01; 0: as many rounds as in the experiment */
-    double patience; /* most seconds of that for a kind of rays on a scene */
-    /* FILE.npy, which gets the hit and the cost of each ray (measure/ray_file.c); or NULL. If the experiment
-     * has several cells, FILE-NAME.npy for each, with the names of scene, accelerator and kind of rays of
-     * which there are several. */
-    const char *hits, *counts;
+    double until;     /* rounds continue until all intervals of ratios are within this part of their medians:
+                         0.01; 0: as many rounds as in the experiment */
+    double patience;  /* most seconds of that for a kind of rays on a scene */
+    const char *hits; /* a file for the hit of each ray (rt_hits_put) of an experiment of one cell; or NULL */
     RtRunObserver observer;
     /* Gets the recorded rays of each kind, and the exact accelerator that answers them; or NULL. */
     RtStatus (*rays)(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,

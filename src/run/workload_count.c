@@ -174,44 +174,18 @@ static RtStatus distribute_cell(RtWorkloadState *workload, uint32_t c, RtRayKind
     return rt_workload_tell(workload, RT_EVENT_DISTRIBUTION, c, kind, error);
 }
 
-/* ---- the hit and the cost of each ray ---- */
+/* ---- the hit of each ray ---- */
 
-/* The file of a cell (RtWorkloadOptions). */
-static RtStatus open_file(const RtWorkloadState *workload, uint32_t c, RtRayKind kind, const char *file,
-                          RtOutput *output, RtError *error) {
-    const RtExperiment *e = workload->experiment;
-    const char *const names[] = {e->workload_count > 1 ? e->workloads[workload->index].label : "",
-                                 e->candidate_count > 1 ? rt_candidate_label(e, c) : "",
-                                 e->kind_count > 1 ? rt_experiment_kind_name(e, kind) : ""};
-    char text[3 * RT_MAX_LABEL] = "", name[RT_MAX_FILE_NAME], path[RT_MAX_PATH];
-    for (int i = 0; i < 3; i++)
-        if (*names[i]) rt_append_text(text, sizeof text, "%s%s", *text ? "-" : "", names[i]);
-    if (!*text) return rt_output_open(output, file, error);
-    rt_file_name(text, name, sizeof name);
-    const int stem = (int)(strlen(file) - strlen(".npy")); /* or .csv */
-    if (snprintf(path, sizeof path, "%.*s-%s%s", stem, file, name, file + stem) >= RT_MAX_PATH)
-        return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
-    return rt_output_open(output, path, error);
-}
-
-static RtStatus save_rows(const RtWorkloadState *workload, uint32_t c, RtRayKind kind, const RtRows *rows,
-                          void (*put)(const RtRows *rows, const char *path, FILE *out), const char *file,
+static RtStatus save_hits(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,
                           RtError *error) {
-    RtOutput output;
-    if (!file) return RT_OK;
-    RT_TRY(open_file(workload, c, kind, file, &output, error));
-    put(rows, file, output.file);
-    return rt_output_commit(&output, error);
-}
-
-static RtStatus save_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,
-                          RtError *error) {
-    (void)cell;
+    (void)kind, (void)cell;
     const RtWorkloadOptions *options = workload->options;
     RT_OWNED(RtRows, rows, rt_rows_clear);
+    RtOutput output;
     RT_TRY(rt_measure_rows(workload->accels[c], &workload->shares[c].set, options->threads, &rows, error));
-    RT_TRY(save_rows(workload, c, kind, &rows, rt_hits_put, options->hits, error));
-    return save_rows(workload, c, kind, &rows, rt_counts_put, options->counts, error);
+    RT_TRY(rt_output_open(&output, options->hits, error));
+    rt_hits_put(&rows, options->hits, output.file);
+    return rt_output_commit(&output, error);
 }
 
 /* ---- all steps ---- */
@@ -236,7 +210,6 @@ RtStatus rt_workload_count(RtWorkloadState *workload, RtRayKind kind, RtError *e
     RT_TRY(deal_shares(workload, kind, error));
     if (workload->experiment->limit_seconds > 0) RT_TRY(each_cell(workload, kind, check_seconds, error));
     RT_TRY(each_cell(workload, kind, count_cell, error));
-    if (workload->options->hits || workload->options->counts)
-        RT_TRY(each_cell(workload, kind, save_cell, error));
+    if (workload->options->hits) RT_TRY(each_cell(workload, kind, save_hits, error));
     return workload->distributions ? each_cell(workload, kind, distribute_cell, error) : RT_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally rays, and what takes its files: bench and verify --rays-from, bench --hits and --counts. */
+/* raytally rays, and what takes its files: bench and verify --rays-from, bench --hits. */
 #include "command_testing.h"
 
 #include "core/base/file.h"
@@ -59,44 +59,31 @@ RT_TEST(recorded_rays_that_are_read_back_meet_and_cost_the_same) {
         const char *kind = kinds[i / 3][0], *given = kinds[i / 3][1], *spec = specs[i % 3];
         assert_int_equal(run("rays balls:size=2 %s --rays %s -o '%s'", SMALL, kind, RAYS), 0);
         assert_int_equal(
-            run("bench balls:size=2 %s --accel %s --rays %s --count-only --json --hits '%s.h1.npy' "
-                "--counts '%s.c1.npy'",
-                SMALL, spec, kind, OUT, OUT),
+            run("bench balls:size=2 %s --accel %s --rays %s --count-only --json --hits '%s.h1.npy'", SMALL,
+                spec, kind, OUT),
             0);
         json_auto_t *recorded = counts_of_run();
         assert_int_equal(
             run("bench balls:size=2 --accel %s --rays-from '%s' --rays %s --count-only --json --hits "
-                "'%s.h2.npy' --counts '%s.c2.npy' --threads 2",
-                spec, RAYS, given, OUT, OUT),
+                "'%s.h2.npy' --threads 2",
+                spec, RAYS, given, OUT),
             0);
         json_auto_t *read = counts_of_run();
         assert_true(json_equal(recorded, read));
         assert_same_bytes(OUT ".h1.npy", OUT ".h2.npy");
-        assert_same_bytes(OUT ".c1.npy", OUT ".c2.npy");
     }
 }
 
-RT_TEST(rows_of_counts_sum_to_the_counts_and_rows_of_hits_to_the_hits) {
+RT_TEST(rows_of_hits_sum_to_the_hits) {
     assert_int_equal(
-        run("bench balls:size=2 %s --accel octree --rays diffuse --count-only --json --hits '%s.h.npy' "
-            "--counts '%s.c.npy'",
-            SMALL, OUT, OUT),
+        run("bench balls:size=2 %s --accel octree --rays diffuse --count-only --json --hits '%s.h.npy'",
+            SMALL, OUT),
         0);
     json_auto_t *counts = counts_of_run();
-    OWNED_BYTES hits = bytes_of(OUT ".h.npy"), rows = bytes_of(OUT ".c.npy");
-    RtTally sum = {0};
-    const char *at = numbers_of(&rows);
-    for (; at < rows.data + rows.size; at += sizeof(RtTally)) {
-        RtTally row;
-        memcpy(&row, at, sizeof row);
-        rt_tally_add(&sum, &row);
-        assert_int_equal(row.rays, 1);
-    }
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++)
-        assert_int_equal(rt_tally_get(&sum, i),
-                         json_integer_value(json_object_get(counts, rt_tally_name(i))));
-    uint64_t hit = 0, all = 0;
-    for (at = numbers_of(&hits); at < hits.data + hits.size; at += sizeof(float) + sizeof(int64_t)) {
+    OWNED_BYTES hits = bytes_of(OUT ".h.npy");
+    json_int_t hit = 0, all = 0;
+    for (const char *at = numbers_of(&hits); at < hits.data + hits.size;
+         at += sizeof(float) + sizeof(int64_t)) {
         float t;
         int64_t object;
         memcpy(&t, at, sizeof t);
@@ -105,8 +92,8 @@ RT_TEST(rows_of_counts_sum_to_the_counts_and_rows_of_hits_to_the_hits) {
         hit += object >= 0;
         all++;
     }
-    assert_int_equal(hit, sum.hits);
-    assert_int_equal(all, sum.rays);
+    assert_int_equal(hit, json_integer_value(json_object_get(counts, "hits")));
+    assert_int_equal(all, json_integer_value(json_object_get(counts, "rays")));
     assert_true(0 < hit && hit < all);
 }
 
@@ -130,33 +117,23 @@ static uint64_t rows_of_text(const char *path) {
     return rows - 1;
 }
 
-RT_TEST(rays_hits_and_counts_as_text_are_those_of_arrays) {
+RT_TEST(rays_and_hits_as_text_are_those_of_arrays) {
     const char *const bench =
         "bench balls:size=2 --accel grid --rays %s --count-only --rays-from '%s.%s' --hits "
-        "'%s.h.%s' --counts '%s.c.%s'";
+        "'%s.h.%s'";
     for (int text = 0; text < 2; text++) {
         const char *ending = text ? "csv" : "npy";
         assert_int_equal(run("rays balls:size=2 %s --rays diffuse -o '%s.%s'", SMALL, OUT, ending), 0);
-        assert_int_equal(run(bench, "occlusion", OUT, ending, OUT, ending, OUT, ending), 0);
+        assert_int_equal(run(bench, "occlusion", OUT, ending, OUT, ending), 0);
         if (text) assert_int_equal(strncmp(text_of(OUT ".h.csv"), "blocked\n0\n", 10), 0);
-        assert_int_equal(run(bench, "nearest", OUT, ending, OUT, ending, OUT, ending), 0);
+        assert_int_equal(run(bench, "nearest", OUT, ending, OUT, ending), 0);
     }
-    OWNED_BYTES counts = bytes_of(OUT ".c.npy");
-    assert_non_null(strstr(text_of(OUT ".c.csv"), "rays,hits,object_tests,"));
-    assert_int_equal(rows_of_text(OUT ".c.csv"),
-                     (size_t)(counts.data + counts.size - numbers_of(&counts)) / sizeof(RtTally));
+    OWNED_BYTES hits = bytes_of(OUT ".h.npy");
+    assert_int_equal(rows_of_text(OUT ".h.csv"), (hits.data + hits.size - numbers_of(&hits)) / 12);
     for (int text = 0; text < 2; text++)
         assert_said(run("verify balls:size=2 --rays-from '%s.csv' --hits-from '%s.h.%s'", OUT, OUT,
                         text ? "csv" : "npy"),
                     0, OUT ".out", "by verdicts, nothing wrong");
-    unlink(OUT ".of-bvh.csv");
-    assert_int_equal(
-        run("bench balls:size=2 --accel grid --accel bvh --rays nearest --count-only --rays-from "
-            "'%s.csv' --hits '%s.of.csv'",
-            OUT, OUT),
-        0);
-    assert_non_null(strstr(text_of(OUT ".out"), ".of-*.csv\n"));
-    assert_int_equal(rows_of_text(OUT ".of-bvh.csv"), rows_of_text(OUT ".c.csv"));
 }
 
 RT_TEST(verify_asks_the_rays_of_a_file_and_is_gone_on_with_only_by_the_same) {
@@ -218,7 +195,7 @@ RT_TEST(what_does_not_go_together_is_refused_and_leaves_no_file) {
         {"bench balls:size=1 --accel bvh --rays-from x.npy --rays nearest", "x.npy: cannot be opened"},
         {"bench balls:size=1 --accel bvh --rays-from /dev/null --rays nearest", "this is not a file"},
         {"bench balls:size=1 --accel bvh --hits y.npz", "expected a file name that ends in .npy"},
-        {"bench balls:size=1 --accel bvh --rays primary --hits y.npy --counts y.npy", "named twice"},
+        {"bench balls:size=1 --accel bvh --accel grid --rays primary --hits y.npy", "one accelerator"},
         {"bench balls:size=1 --accel bvh --rays nearest --rays-from y.npy --hits y.npy", "named twice"},
         {"bench balls:size=1 --accel bvh --rays primary --size 8x8 --count-only --hits no/y.npy",
          "No such file"},

@@ -58,20 +58,18 @@ class Program(Case):
 
     def check_kind(self, kind, answers_of):
         program("rays", *self.of, "--rays", kind, "-o", "rays.npy")
-        program("bench", *self.of, "--rays", kind, "--accel", "grid:density=4", "--count-only", "--hits", "hits.npy", "--counts",
-                "counts.npy", "--csv", "counts.csv")
+        program("bench", *self.of, "--rays", kind, "--accel", "grid:density=4", "--count-only", "--hits", "hits.npy", "--csv",
+                "counts.csv")
         with open("counts.csv", encoding="utf-8") as file:
             table = next(csv.DictReader(file))
-        rays, hits, counts = self.accel.record(kind), numpy.load("hits.npy"), numpy.load("counts.npy")
+        rays, hits = self.accel.record(kind), numpy.load("hits.npy")
         answers, counted = answers_of(rays), self.accel.counts(rays)
         self.assert_same(numpy.asarray(rays), numpy.load("rays.npy"))
         self.assertEqual(f"{rays.fingerprint:016x}", table["set_hash"])
         for name in hits.dtype.names or [...]:
             self.assertTrue((answers[name] == hits[name]).all())
         self.assertEqual(self.accel.spec, table["spec"])
-        self.assertEqual(counted.dtype.names, counts.dtype.names)
         for name in raytally.COUNTERS:
-            self.assertTrue((counted[name] == counts[name]).all())
             self.assertEqual(counted[name].sum(), int(table[name]))
         structure = self.accel.describe()
         self.assertEqual([structure[name] for name in ("leaves", "references", "depth", "bytes")],
