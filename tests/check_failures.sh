@@ -70,7 +70,7 @@ commands=(
     "bench scene.yaml $frame --accel bvh --accel item+light+octree --rays primary,shadow --count-only --csv out.csv --json --threads 1"
     'bench scene.yaml --accel kd --rays-from rays.npy --rays nearest --count-only --hits out.npy --threads 2'
     'verify scene.yaml --accel bvh --accel wide --rays 20 --threads 1 --out checked'
-    'verify scene.yaml --rays-from rays.csv --hits-from hits.csv --wrong-rays out.npy --threads 1 --json'
+    'verify scene.yaml --rays-from rays.csv --hits-from hits.csv --differing-rays out.npy --threads 1 --json'
     'trace scene.yaml --ray rays.npy:7 --depth 2 --json'
     'verify mesh.obj --accel embree:mode=user --rays 20 --threads 1 --json'
     'run small.yaml --out out --threads 1'

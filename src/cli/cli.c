@@ -148,13 +148,12 @@ json_t *rt_cli_vector_json(RtVec3 v) {
 /* Reads x[0..8), with commas or spaces between; returns how many there are, 0 if `text` is something else. */
 static int read_numbers(const char *text, float x[8]) {
     char *end;
-    for (int count = 0; count < 8; text = end + strspn(end, ", ")) {
+    int count = 0;
+    for (; count < 8 && *text; text = end + strspn(end, ", ")) {
         x[count++] = strtof(text, &end);
-        if (end == text) return 0;
-        if (!*end) return count;
-        if (!strchr(", ", *end)) return 0;
+        if (end == text || !strchr(", ", *end)) return 0; /* finds the end, too */
     }
-    return 0;
+    return *text ? 0 : count;
 }
 
 static RtStatus row_of_file(const char *text, const char *colon, RtRay *ray, RtError *error) {
@@ -179,7 +178,7 @@ RtStatus rt_cli_ray(const char *text, RtRay *ray, RtError *error) {
         return rt_fail(
             error, RT_BAD_INPUT,
             "--ray: '%s' is no ray: expected OX,OY,OZ,DX,DY,DZ or OX,OY,OZ,DX,DY,DZ,TMIN,TMAX, as in "
-            "0,0,5,0,0,-1; or FILE.npy:N",
+            "0,0,5,0,0,-1; or FILE.npy:N or FILE.csv:N",
             text);
     *ray = (RtRay){.org = rt_vec3(x[0], x[1], x[2]),
                    .tmin = x[6],

@@ -245,8 +245,8 @@ RtStatus rt_cli_check_pixel(const RtSampling *sampling, RtPixel pixel, RtError *
 
 #define RT_RAY_OPERAND "RAY"
 #define RT_RAY_HELP                                                                                          \
-    "OX,OY,OZ,DX,DY,DZ, origin and direction, and ,TMIN,TMAX if they are not 0,inf; or FILE.npy:N, row N "   \
-    "of rays as --rays-from takes them, the first is 0"
+    "OX,OY,OZ,DX,DY,DZ, origin and direction, and ,TMIN,TMAX if they are not 0,inf; or FILE.npy:N or "       \
+    "FILE.csv:N, row N of rays as --rays-from takes them, the first is 0"
 
 /* The ray of an option with this help; of kind random, as rays from files are. RT_BAD_INPUT if it is none. */
 RtStatus rt_cli_ray(const char *text, RtRay *ray, RtError *error);

@@ -173,10 +173,9 @@ static void print_answer(const RtPath *path, const RtGeometry *g) {
 
 static void print_path(const RtPath *path, const Options *o, const char *title, const RtGeometry *g) {
     bool any = false;
-    const RtRay *r = &path->ray;
-    printf("%s\nfrom (%.6g, %.6g, %.6g) along (%.6g, %.6g, %.6g), t from %.6g to %.6g\n", title,
-           (double)r->org.x, (double)r->org.y, (double)r->org.z, (double)r->dir.x, (double)r->dir.y,
-           (double)r->dir.z, (double)r->tmin, (double)r->tmax);
+    char ray[RT_RAY_TEXT];
+    rt_ray_format(&path->ray, ray, sizeof ray);
+    printf("%s\n%s\n", title, ray);
     print_rows(path, o, g);
     printf("\ntotal:");
     for (size_t i = 2; i < RT_TALLY_COUNTER_COUNT; i++) { /* without rays and hits */
@@ -281,8 +280,8 @@ static void print_sums(const RtRayTree *tree, const RtTally *costs) {
            (unsigned long long)sum.steps);
     if (cut > 0)
         printf("%u hit%s would reflect or transmit, but the depth is reached\n", cut, rt_plural(cut));
-    printf("colour: red %.6g, green %.6g, blue %.6g, the sum over the rays, as in the image\n",
-           (double)tree->color.x, (double)tree->color.y, (double)tree->color.z);
+    printf("colour: red %.6g, green %.6g, blue %.6g, the sum over the rays\n", (double)tree->color.x,
+           (double)tree->color.y, (double)tree->color.z);
 }
 
 /* Prints at most `rows` rays, all for 0, depth first and indented; the light that each brings, and its terms;
@@ -335,10 +334,10 @@ static json_t *path_json(const RtPath *path, const Options *o, const char *spec)
     for (uint32_t i = 0; i < path->count; i++) json_array_append_new(rows, row_json(path, &path->rows[i]));
     return json_pack("{s:s, s:s, s:s, s:o, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
                      o->scene, "accel", o->accel, "spec", spec, "pixel", pixel_json(o), "kind",
-                     rt_ray_kind_name((RtRayKind)r->kind), "org", rt_cli_vector_json(r->org), "dir",
-                     rt_cli_vector_json(r->dir), "tmin", rt_json_number((double)r->tmin), "tmax",
-                     rt_json_number((double)r->tmax), "rows", rows, "counts", rt_json_tally(&path->tally),
-                     "object",
+                     o->ray && o->kind == RT_RAY_PRIMARY ? "nearest" : rt_ray_kind_name((RtRayKind)r->kind),
+                     "org", rt_cli_vector_json(r->org), "dir", rt_cli_vector_json(r->dir), "tmin",
+                     rt_json_number((double)r->tmin), "tmax", rt_json_number((double)r->tmax), "rows", rows,
+                     "counts", rt_json_tally(&path->tally), "object",
                      path->hit.object >= RT_UNNAMED_OBJECT ? json_null() : json_integer(path->hit.object),
                      "blocked", path->any ? json_boolean(path->hit.object != RT_NO_OBJECT) : json_null(), "t",
                      rt_json_number((double)path->hit.t));

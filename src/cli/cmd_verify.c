@@ -55,8 +55,8 @@ static void finish(void *options, struct argp_state *state) {
                           "--quick and --replay");
     if (o->hits_from && (!o->rays_from || o->given_count > 1))
         argp_error(state, "--hits-from are hits of the rays of --rays-from on one SCENE: give both");
-    if (o->work.wrong_rays && (o->given_count != 1 || o->work.start == RT_START_RESUME))
-        argp_error(state, "--wrong-rays writes rays of one SCENE, all in this run: no --resume");
+    if (o->work.differing_rays && (o->given_count != 1 || o->work.start == RT_START_RESUME))
+        argp_error(state, "--differing-rays writes rays of one SCENE, all in this run: no --resume");
     if (o->work.start != RT_START_FRESH && !o->work.folder)
         argp_error(state, "--resume and --force need the run's directory: --out DIR");
 }
@@ -78,11 +78,10 @@ static const RtOption options[] = {
     {"hits-from", 0, "FILE.npy", RT_TO_TEXT(hits_from),
      "Judge the hits of another program: those of --rays-from on SCENE, a row per ray with the fields t (in "
      "lengths of the direction) and object (-1 for a miss), as `raytally bench --hits` writes it; or "
-     "float32, t "
-     "alone (inf for a miss). No accelerator is verified unless --accel names one"},
-    {"wrong-rays", 0, "FILE.npy", RT_TO_PATH(work.wrong_rays, RT_CLI_ROWS),
-     "Write the rays with a wrong answer to FILE, as --rays-from and `raytally trace --ray FILE.npy:0` read "
-     "it"},
+     "float32, t alone (inf for a miss). No accelerator is verified unless --accel names one"},
+    {"differing-rays", 0, "FILE.npy", RT_TO_PATH(work.differing_rays, RT_CLI_ROWS),
+     "Write the rays whose answer is marginal or wrong to FILE, as --rays-from and `raytally trace --ray "
+     "FILE.npy:0` read it"},
     {"seed", 's', "S", RT_TO_INTEGER(work.rays.seed, 0, INT64_MAX),
      "Seed of the random rays and of the families of scenes (default 1)"},
     {"threads", 't', "N", RT_TO_INTEGER(work.rays.threads, 0, 1024),
@@ -370,23 +369,27 @@ static void print_judged(const RtVerifySum *sum) {
         const char *name = s == RT_SIDE_EXPECTED ? rt_accel_truth() : rt_side_name((RtSide)s);
         printf("%s %s %" PRIu64, s ? "," : "", s == RT_SIDE_GOT ? sum->name : name, sum->sides[s]);
     }
+    if (sum->missed > 0) printf("; exact hits missed: %" PRIu64, sum->missed);
     putchar('\n');
 }
 
 /* The wrong answers of the accelerators that are exact, or of the others. */
 static void print_wrong(const RtVerifySum *sums, uint32_t count, bool exact) {
-    uint64_t wrong = 0, occluded_wrong = 0, undecided = 0, failed = 0;
+    uint64_t wrong = 0, occluded_wrong = 0, undecided = 0, failed = 0, missed = 0;
     for (uint32_t i = 0; i < count; i++) {
         if (sums[i].exact != exact) continue;
         wrong += sums[i].verdicts[RT_WRONG];
         occluded_wrong += sums[i].occluded_wrong;
         undecided += sums[i].undecided;
+        missed += sums[i].missed;
         failed += sums[i].failed;
     }
     if (failed == 0)
         fputs("nothing wrong", stdout);
     else
         printf("%" PRIu64 " wrong", wrong);
+    if (missed > 0)
+        printf("%s%" PRIu64 " exact hit%s missed", failed == 0 ? " but " : ", ", missed, rt_plural(missed));
     if (occluded_wrong > 0) printf(", %" PRIu64 " occluded wrong", occluded_wrong);
     if (undecided > 0) printf(", %" PRIu64 " row%s undecided", undecided, rt_plural(undecided));
 }

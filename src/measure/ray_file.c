@@ -30,7 +30,7 @@ enum {
     MOST_COLUMNS = 64,  /* of a text */
     MULTIPLE = 64       /* alignment of the numbers */
 };
-static const char MAGIC[MAGIC_BYTES + 1] = "\x93NUMPY";
+static const char MAGIC[MAGIC_BYTES + 1] = "\x93NUMPY", BYTE_ORDER_MARK[] = "\xEF\xBB\xBF";
 
 /* ---- reading headers ---- */
 
@@ -38,7 +38,8 @@ static const char MAGIC[MAGIC_BYTES + 1] = "\x93NUMPY";
 static RtStatus read_header(FILE *file, const char *path, char text[MOST_HEADER + 1], RtError *error) {
     unsigned char start[MAGIC_BYTES + 2], size[4] = {0};
     if (fread(start, 1, sizeof start, file) != sizeof start || memcmp(start, MAGIC, MAGIC_BYTES) != 0)
-        return rt_fail(error, RT_BAD_INPUT, "%s: this is not a NumPy array: write it with numpy.save", path);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: this is not a NumPy array: write it with numpy.save, or text to a .csv", path);
     const unsigned major = start[MAGIC_BYTES], minor = start[MAGIC_BYTES + 1];
     if (major < 1 || major > 3 || minor != 0)
         return rt_fail(error, RT_BAD_INPUT, "%s: unknown format version %u.%u: expected 1.0, 2.0 or 3.0",
@@ -210,11 +211,16 @@ static RtStatus open_text(Source *s, RtError *error) {
     char line[MOST_ROW] = "", *rest = line;
     uint32_t found = 0;
     read_line(s->file, line);
+    if (strncmp(line, BYTE_ORDER_MARK, 3) == 0) rest += 3;
     for (const char *word; s->column_count < MOST_COLUMNS && (word = strsep(&rest, ",")); s->column_count++) {
         int k = s->form->count - 1;
         while (k >= 0 && strcmp(word + strspn(word, " "), s->form->names[k]) != 0) k--;
         s->columns[s->column_count] = k;
-        if (k >= 0) found |= 1u << k;
+        if (k < 0) continue;
+        if (found >> k & 1)
+            return rt_fail(error, RT_BAD_INPUT, "%s: the first line names '%s' twice", s->path,
+                           s->form->names[k]);
+        found |= 1u << k;
     }
     if ((found & s->form->needed) != s->form->needed)
         return rt_fail(error, RT_BAD_INPUT,
@@ -320,8 +326,8 @@ RtStatus rt_rays_save(const RtRaySet *set, const char *path, RtError *error) {
 const char *rt_ray_fault(const RtRay *ray) {
     float size = rt_maxf(rt_maxf(fabsf(ray->org.x), fabsf(ray->org.y)), fabsf(ray->org.z));
     if (!rt_finite(ray->org) || size > RT_MAX_COORDINATE) return "its origin is not finite, or beyond 5e17";
-    if (!rt_finite(ray->dir)) return "its direction is not finite";
-    if (ray->dir.x == 0 && ray->dir.y == 0 && ray->dir.z == 0) return "its direction is zero";
+    if (!rt_finite(ray->dir)) return "its direction is not finite as float32";
+    if (ray->dir.x == 0 && ray->dir.y == 0 && ray->dir.z == 0) return "its direction is zero as float32";
     if (!(ray->tmin >= 0) || !isfinite(ray->tmin)) return "its tmin is negative or not finite";
     return "its tmax is less than its tmin, or not a number";
 }

@@ -113,9 +113,9 @@ RtStatus rt_reference_init(RtReference *reference, const RtAccel *oracle, const 
                                .rays = rays,
                                .count = count,
                                .hits = rt_alloc(count, sizeof(RtHit)),
-                               .wrong = rt_alloc(count, sizeof(bool))};
+                               .differs = rt_alloc(count, sizeof(bool))};
     Job job = {.reference = reference, .accel = oracle, .threads = threads};
-    RtStatus status = reference->hits && reference->wrong
+    RtStatus status = reference->hits && reference->differs
                           ? run(&job, refer_chunk, error)
                           : rt_fail_memory(error, "reference answers", count * sizeof(RtHit));
     if (status != RT_OK) rt_reference_clear(reference);
@@ -124,7 +124,7 @@ RtStatus rt_reference_init(RtReference *reference, const RtAccel *oracle, const 
 
 void rt_reference_clear(RtReference *reference) {
     rt_free(reference->hits);
-    rt_free(reference->wrong);
+    rt_free(reference->differs);
     *reference = (RtReference){0};
 }
 
@@ -224,6 +224,7 @@ static RtEquivalence sum_of_parts(const Job *job) {
         sum.occluded_wrong += part->occluded_wrong;
         for (int v = 0; v < RT_VERDICT_COUNT; v++) sum.verdicts[v] += part->verdicts[v];
         for (int s = 0; s < RT_SIDE_COUNT; s++) sum.sides[s] += part->sides[s];
+        sum.missed += part->missed;
         for (int f = 0; f < RT_FAULT_COUNT; f++) sum.faults[f] += part->faults[f];
         if (part->any_wrong && !sum.any_wrong) sum.first_wrong = part->first_wrong;
         sum.any_wrong |= part->any_wrong;
@@ -294,10 +295,9 @@ void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *
     *count = end < left ? end : left;
 }
 
-static void keep_wrong_answer(const RtReference *reference, RtEquivalence *part, const RtWrongAnswer *wrong) {
+static void keep_wrong_answer(RtEquivalence *part, const RtWrongAnswer *wrong) {
     if (!part->any_wrong) part->first_wrong = *wrong;
     part->any_wrong = true;
-    reference->wrong[wrong->index] = true;
 }
 
 /* Of an answer to `nearest` that is marginal or wrong: which side is exactly right? */
@@ -305,6 +305,7 @@ static RtStatus add_side(RtJudge judge, RtHit expected, RtHit got, RtEquivalence
     RtSide side;
     RT_TRY(rt_verdict_side(judge, expected, got, &side, error));
     part->sides[side]++;
+    part->missed += got.object == RT_NO_OBJECT && (side == RT_SIDE_EXPECTED || side == RT_SIDE_NEITHER);
     return RT_OK;
 }
 
@@ -334,18 +335,19 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
                                .blocked = worker->answers.blocked[w][i]};
         RtVerdict verdict;
         RT_TRY(rt_answer_verdict(&worker->query, &wrong, &verdict, error));
-        if (verdict == RT_WRONG) keep_wrong_answer(job->reference, part, &wrong);
+        if (verdict == RT_WRONG) keep_wrong_answer(part, &wrong);
         if (verdict >= RT_MARGINAL) doubtful = &worker->answers.hits[w][i];
         if (verdict == RT_WRONG) faulty = doubtful;
         if (verdict > worst) worst = verdict;
         wrong.occluded = true;
         RT_TRY(rt_answer_verdict(&worker->query, &wrong, &verdict, error));
-        if (verdict == RT_WRONG) keep_wrong_answer(job->reference, part, &wrong);
+        if (verdict == RT_WRONG) keep_wrong_answer(part, &wrong);
         occluded_wrong |= verdict == RT_WRONG;
         if (verdict != RT_WRONG && verdict > worst) worst = verdict;
     }
     part->rays++;
     part->verdicts[worst]++;
+    job->reference->differs[index] |= worst >= RT_MARGINAL || occluded_wrong;
     part->occluded_wrong += occluded_wrong;
     if (doubtful && !job->accel->exact)
         RT_TRY(add_side(judge_of(job->accel, ray), expected, *doubtful, part, error));
@@ -419,10 +421,11 @@ static RtStatus judge_chunk(void *context, size_t chunk, int thread, RtError *er
             RT_TRY(rt_verdict_nearest(judge, expected, got, &verdict, error));
         part->rays++;
         part->verdicts[verdict]++;
+        job->reference->differs[index] |= verdict >= RT_MARGINAL;
         if (verdict >= RT_MARGINAL) RT_TRY(add_side(judge, expected, got, part, error));
         if (verdict < RT_WRONG) continue;
         RT_TRY(add_fault(judge, got, part, error));
-        keep_wrong_answer(job->reference, part, &answer);
+        keep_wrong_answer(part, &answer);
     }
     return RT_OK;
 }
@@ -485,6 +488,7 @@ json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, cons
         json_object_set_new(faults, rt_fault_name((RtFault)f), json_integer((json_int_t)result->faults[f]));
     }
     json_object_set_new(row, "exactly_right", sides);
+    json_object_set_new(row, "missed", json_integer((json_int_t)result->missed));
     json_object_set_new(row, "faults", faults);
     json_object_set_new(row, "certain", json_null());
     json_object_set_new(row, "must_hit", json_null());

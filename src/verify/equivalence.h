@@ -18,8 +18,8 @@ typedef struct RtReference {
     const RtScene *scene; /* borrowed */
     const RtRay *rays;    /* [count] borrowed; they must not move */
     size_t count;
-    RtHit *hits; /* [count] owned */
-    bool *wrong; /* [count] owned: rays that some check has found a wrong answer to */
+    RtHit *hits;   /* [count] owned */
+    bool *differs; /* [count] owned: rays with a marginal or wrong answer in some check */
 } RtReference;
 
 /* Computes the answers to rays[0..count), all valid, with `oracle`: usually brute, or an accelerator
@@ -44,6 +44,7 @@ typedef struct RtEquivalence {
     uint64_t verdicts[RT_VERDICT_COUNT]; /* sum to `rays` */
     /* Rays with a marginal or wrong answer to `nearest`, by which answer is exactly right. */
     uint64_t sides[RT_SIDE_COUNT];
+    uint64_t missed;                  /* of those rays: a miss, but the ray exactly hits */
     uint64_t faults[RT_FAULT_COUNT]; /* of wrong answers to `nearest`, unless it is exact */
     uint64_t occluded_wrong;         /* rays, regardless of their verdict */
     bool any_wrong;

@@ -367,18 +367,18 @@ static RtStatus prepare_scene(Run *run, uint32_t i, RtVerifyScene *scene, RtErro
                              error);
 }
 
-static RtStatus save_wrong_rays(const Run *run, const RtReference *reference, RtError *error) {
-    const char *path = run->verify->wrong_rays;
+static RtStatus save_differing(const Run *run, const RtReference *reference, RtError *error) {
+    const char *path = run->verify->differing_rays;
     char notice[RT_MAX_PATH + 64];
     RT_OWNED(RtRaySet, set, rt_rayset_clear);
     RT_TRY(rt_rayset_init(&set, RT_RAY_RANDOM, reference->count, error));
     set.count = 0;
     for (size_t i = 0; i < reference->count; i++) {
-        if (reference->wrong[i]) set.rays[set.count++] = reference->rays[i];
+        if (reference->differs[i]) set.rays[set.count++] = reference->rays[i];
     }
     RT_TRY(rt_rays_save(&set, path, error));
-    snprintf(notice, sizeof notice, "wrote %s: %" PRIu64 " ray%s with a wrong answer", path, set.count,
-             rt_plural(set.count));
+    snprintf(notice, sizeof notice, "wrote %s: %" PRIu64 " ray%s that differ%s by more than a tie", path,
+             set.count, rt_plural(set.count), set.count == 1 ? "s" : "");
     run->observer->notice(run->observer->context, notice);
     return RT_OK;
 }
@@ -400,7 +400,7 @@ static RtStatus verify_scene(Run *run, uint32_t index, RtError *error) {
         if (status == RT_OK) status = verify_spec(run, &scene, &v->specs[i], error);
         run->progress.done += v->rays.count;
     }
-    if (status == RT_OK && v->wrong_rays) status = save_wrong_rays(run, &scene.reference, error);
+    if (status == RT_OK && v->differing_rays) status = save_differing(run, &scene.reference, error);
     rt_verify_scene_clear(&scene);
     rt_scene_clear(&run->scenes[index]);
     return status;

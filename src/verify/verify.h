@@ -35,9 +35,9 @@ typedef struct RtVerify {
     /* For journal, tables, manifest and replay files; NULL: only replay files, in verify-failures. */
     const char *folder;
     RtStart start; /* what to do with existing results */
-    /* NULL, or a file for the rays with a wrong answer of any accelerator (rt_rays_save), maybe none; for one
-     * scene, and no earlier run. */
-    const char *wrong_rays;
+    /* NULL, or a file for the rays with a marginal or wrong answer of any accelerator (rt_rays_save), maybe
+     * none; for one scene, and no earlier run. */
+    const char *differing_rays;
 } RtVerify;
 
 typedef struct RtVerifyProgress {

@@ -56,6 +56,7 @@ static void add(RtVerifySum *sum, const json_t *row) {
     }
     sum->occluded_wrong += number(row, "occluded_wrong");
     for (int s = 0; s < RT_SIDE_COUNT; s++) sum->sides[s] += number(sides, rt_side_name((RtSide)s));
+    sum->missed += number(row, "missed");
     for (int f = 0; f < RT_FAULT_COUNT; f++) sum->faults[f] += number(faults, rt_fault_name((RtFault)f));
 }
 

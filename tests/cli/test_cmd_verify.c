@@ -154,9 +154,9 @@ RT_TEST(what_cannot_be_verified_is_refused_before_anything_is_printed) {
         {"family:kind=slivers,seed=", "seed"},
         {"balls:size=1 --hits-from x.npy", "of the rays of --rays-from"},
         {"balls:size=1 tetra:size=1 --rays-from r.npy --hits-from x.npy", "on one SCENE"},
-        {"balls:size=1 tetra:size=1 --wrong-rays x.npy", "of one SCENE"},
-        {"balls:size=1 --wrong-rays x.txt", "ends in .npy"},
-        {"balls:size=1 --wrong-rays x.npy --out d --resume", "no --resume"},
+        {"balls:size=1 tetra:size=1 --differing-rays x.npy", "of one SCENE"},
+        {"balls:size=1 --differing-rays x.txt", "ends in .npy"},
+        {"balls:size=1 --differing-rays x.npy --out d --resume", "no --resume"},
         {"--replay nothing.json", "nothing.json"},
         {"--replay nothing.json balls", "takes no SCENE"},
         {"--replay nothing.json --json", "prints text"},
@@ -383,8 +383,8 @@ RT_TEST(hits_of_another_program_are_judged_without_an_accelerator) {
 
 RT_TEST(the_first_wrong_hit_of_another_program_is_kept_as_a_scene_and_all_their_rays_as_a_file) {
     write_hits(5, 1.5f);
-    assert_int_equal(verify(GIVEN " --wrong-rays '" OUT ".wrong.npy' --out '" OUT ".near' --force"), 1);
-    assert_non_null(strstr(text_of(OUT ".err"), "wrong.npy: 5 rays with a wrong answer"));
+    assert_int_equal(verify(GIVEN " --differing-rays '" OUT ".wrong.npy' --out '" OUT ".near' --force"), 1);
+    assert_non_null(strstr(text_of(OUT ".err"), "wrong.npy: 5 rays that differ by more than a tie"));
     assert_non_null(strstr(text_of(OUT ".out"), "displaced 5\n"));
     const char *scene = strstr(text_of(OUT ".out"), "raytally trace '" OUT ".near/0001-");
     assert_non_null(scene);
@@ -396,10 +396,10 @@ RT_TEST(the_first_wrong_hit_of_another_program_is_kept_as_a_scene_and_all_their_
     assert_non_null(strstr(text_of(OUT ".out"), expected));
     /* The same file of rays, and no wrong answer. */
     assert_int_equal(
-        verify("balls:size=1 --accel bvh --rays-from '" OUT ".wrong.npy' --wrong-rays '" OUT ".none.npy'"),
+        verify("balls:size=1 --accel bvh --rays-from '" OUT ".wrong.npy' --differing-rays '" OUT ".none.npy'"),
         0);
     assert_non_null(strstr(text_of(OUT ".out"), "5 comparisons: nothing wrong"));
-    assert_non_null(strstr(text_of(OUT ".err"), "none.npy: 0 rays with a wrong answer"));
+    assert_non_null(strstr(text_of(OUT ".err"), "none.npy: 0 rays that differ by more than a tie"));
 }
 
 RT_TEST(hits_are_judged_again_only_if_they_are_the_same) {

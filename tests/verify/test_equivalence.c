@@ -153,7 +153,7 @@ static void record(const Stage *stage, RtHit *hits, bool named) {
 
 static RtEquivalence judge(const Stage *stage, const RtHit *hits) {
     RtEquivalence one, many;
-    memset(stage->reference.wrong, 0, RAYS * sizeof(bool));
+    memset(stage->reference.differs, 0, RAYS * sizeof(bool));
     assert_ok(rt_equivalence_judge(&stage->reference, hits, 1, &one, error));
     assert_ok(rt_equivalence_judge(&stage->reference, hits, 3, &many, error));
     assert_int_equal(one.rays, RAYS);
@@ -161,7 +161,7 @@ static RtEquivalence judge(const Stage *stage, const RtHit *hits) {
     assert_memory_equal(one.faults, many.faults, sizeof one.faults);
     assert_int_equal(one.first_wrong.index, many.first_wrong.index);
     uint64_t wrong = 0;
-    for (size_t i = 0; i < RAYS; i++) wrong += stage->reference.wrong[i];
+    for (size_t i = 0; i < RAYS; i++) wrong += stage->reference.differs[i];
     assert_int_equal(wrong, one.verdicts[RT_WRONG]);
     return one;
 }
@@ -194,7 +194,7 @@ RT_TEST(recorded_answers_that_are_wrong_are_found_with_their_faults) {
         assert_int_equal(e.faults[RT_FAULT_BESIDE], 1);
         assert_int_equal(e.sides[RT_SIDE_EXPECTED], 3);
         assert_int_equal(e.first_wrong.index, miss < 77 ? miss : 77);
-        assert_true(stage->reference.wrong[77] && stage->reference.wrong[1234]);
+        assert_true(stage->reference.differs[77] && stage->reference.differs[1234]);
     }
 }
 

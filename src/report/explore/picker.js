@@ -43,7 +43,8 @@ export function makePicker(data, choose) {
     const x = (at(column) + 0.5) * scale, y = (at(row) + 0.5) * scale, arm = 6 * scale;
     context.imageSmoothingEnabled = false;
     context.drawImage(plain, 0, 0, canvas.width, canvas.height);
-    for (const [color, width] of [['#000', 3 * scale / 2], ['#fff', scale / 2]]) {
+    const given = row >= data.rows; // a ray of no pixel
+    for (const [color, width] of given ? [] : [['#000', 3 * scale / 2], ['#fff', scale / 2]]) {
       context.strokeStyle = color;
       context.lineWidth = width;
       context.strokeRect(x - scale, y - scale, 2 * scale, 2 * scale);
@@ -54,8 +55,8 @@ export function makePicker(data, choose) {
         context.stroke();
       }
     }
-    byId('pixel-x').value = row < data.rows ? at(column) : '';
-    byId('pixel-y').value = row < data.rows ? at(row) : '';
+    byId('pixel-x').value = given ? '' : at(column);
+    byId('pixel-y').value = given ? '' : at(row);
     byId('pixel-said').textContent = said;
     canvas.setAttribute('aria-label', `The image of ${data.scene.name}; ${said}`);
   };

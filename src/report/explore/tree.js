@@ -59,7 +59,7 @@ export function showTerms(tree, color, chosen) {
     element('tbody', {}, ...terms.map((term) => lightRow(term, formula(term), ray.terms[term])), lightRow(background ? 'background' : 'sum', '', ray.light))));
   if (chosen === 0)
     place.append(element('p', { class: 'meta', id: 'color', title: color.join(' ') }, `The renderer adds what each ray of the tree brings from its own hit or light, ` +
-      `in float32 and in the order in which it traced them: ${color.map((value) => value.toFixed(4)).join(' ')}, the colour in the image.`));
+      `in float32 and in the order in which it traced them: ${color.map((value) => value.toFixed(4)).join(' ')}, the colour.`));
 }
 
 // The objects that compete for the sample, if an item buffer answers it.
