@@ -98,6 +98,12 @@ static RtStatus available(const RtValue *values, RtError *error) {
     return rt_isa_available(values[PARAM_ISA], error);
 }
 
+/* Scenes for which the proof of fused box tests holds (ray.h). */
+static bool may_fuse(const RtGeometry *g) {
+    const RtVec3 size = rt_sub(g->box.hi, g->box.lo);
+    return g->triangle_count == g->object_count && rt_maxf(rt_maxf(size.x, size.y), size.z) >= 0x1p-29f;
+}
+
 static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtValue *values = what->values;
     const RtTreeMethod method = (RtTreeMethod)values[PARAM_BUILD].choice;
@@ -108,6 +114,7 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     self->in_flight = (uint32_t)values[PARAM_IN_FLIGHT].i;
     self->order = values[PARAM_ORDER].flag;
     self->prefetch = values[PARAM_PREFETCH].flag;
+    self->fused = may_fuse(&what->scene->geometry);
     self->sharing = (float)values[PARAM_SHARING].f;
     self->packets = (uint32_t)values[PARAM_PACKETS].i;
     RT_TRY(fill(self, 0, what, method, error));

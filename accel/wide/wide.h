@@ -185,6 +185,7 @@ typedef struct RtWide {
     uint32_t packets;           /* packets traced at once; 0: none */
     float sharing;              /* packets pay if at least so many rays share a visit of a node, on average */
     bool order, prefetch;
+    bool fused; /* one ray's box tests may be fused (ray.h) */
 } RtWide;
 
 #endif

@@ -21,64 +21,132 @@ RT_KERNEL void finish_ray(const Query *q, const RayState *f, bool any, bool coun
 
 /* ---- one ray after the other ---- */
 
-/* Pops the stack until an entry is not entered beyond the best hit; the bottom is entered at -infinity. */
-RT_KERNEL RtWideRef pop(const RayState *f, uint32_t *top, bool any) {
+/* A ray at nodes, in registers: filled where a visit of nodes begins, so that none is live across a leaf. */
+typedef struct NodeRay {
+    RtFloat8 inv[3], near[3], far[3], tmin, limit; /* near, far: org_near, org_far; fused: times inv */
+    size_t near_at[3], far_at[3];                  /* offsets of planes */
+} NodeRay;
+
+RT_KERNEL NodeRay at_nodes(const RayState *f) {
+    NodeRay r;
+    r.tmin = rt_all8(f->tmin);
+    r.limit = rt_all8(f->limit);
+#pragma GCC unroll 3
+    for (int a = 0; a < 3; a++) {
+        r.inv[a] = rt_all8(f->inv[a]);
+        r.near[a] = rt_all8(f->org_near[a]);
+        r.far[a] = rt_all8(f->org_far[a]);
+        r.near_at[a] = f->near[a];
+        r.far_at[a] = f->far[a];
+    }
+    return r;
+}
+
+/* hit_children; fused: see above. */
+RT_KERNEL uint32_t meet_children(const RtWideNode *node, const NodeRay *r, bool fused, RtFloat8 *enter) {
+    RtFloat8 near = r->tmin, far = r->limit;
+#pragma GCC unroll 3
+    for (int a = 0; a < 3; a++) {
+        const RtFloat8 first = rt_load8((const char *)node + r->near_at[a]);
+        const RtFloat8 last = rt_load8((const char *)node + r->far_at[a]);
+        near = rt_max(fused ? rt_fused_less8(first, r->inv[a], r->near[a]) : (first - r->near[a]) * r->inv[a],
+                      near);
+        far =
+            rt_min(fused ? rt_fused_less8(last, r->inv[a], r->far[a]) : (last - r->far[a]) * r->inv[a], far);
+    }
+    *enter = near;
+    return rt_le_bits(near, far);
+}
+
+/* From `ref`, a node, to a leaf, or RT_WIDE_DONE. */
+RT_KERNEL RtWideRef find_leaf(RayState *f, const RtWideTree *tree, RtWideRef ref, bool any, bool ordered,
+                              bool ahead, bool fused) {
+    const NodeRay r = at_nodes(f);
+    const float limit = f->limit;
+    uint32_t top = f->top;
     do {
-        --*top;
-    } while (!any && f->enter[*top] > f->limit);
-    return f->stack[*top];
+        const RtWideNode *node = rt_wide_node(tree, ref);
+        RtFloat8 near;
+        uint32_t mask = meet_children(node, &r, fused, &near);
+        if (mask == 0) {
+            do ref = f->stack[--top];
+            while (!any && f->enter[top] > limit);
+            continue;
+        }
+        uint32_t lane = (uint32_t)__builtin_ctz(mask);
+        ref = node->child[lane];
+        mask &= mask - 1;
+        if (mask == 0) continue;
+        _Alignas(RtFloat8) float enter[RT_WIDE];
+        if (!any) rt_store(enter, near);
+        float at = any ? 0 : enter[lane];
+        do {
+            lane = (uint32_t)__builtin_ctz(mask);
+            mask &= mask - 1;
+            RtWideRef other = node->child[lane];
+            const float d = any ? 0 : enter[lane];
+            if (any || d < at || !ordered) {
+                f->stack[top] = ref;
+                if (!any) f->enter[top] = at;
+                ref = other;
+                at = d;
+            } else {
+                f->stack[top] = other;
+                f->enter[top] = d;
+            }
+            if (ahead) prefetch(tree, f->stack[top]);
+            top++;
+        } while (mask);
+    } while (rt_wide_kind(ref) == RT_WIDE_NODE);
+    f->top = top;
+    return ref;
 }
 
 /* With one ray nothing overlaps a chain of dependent operations. Branches on the number of children hit cut
  * it, and an entry beyond the best hit is dropped when it is popped, not after each hit. */
-RT_KERNEL void trace_one(const Query *q, RayState *f, bool any, bool counted) {
+RT_KERNEL void trace_one(const Query *q, RayState *f, bool any, bool fused) {
     const RtWideTree tree = *q->tree;
-    RtTally *tally = counted ? f->tally : NULL;
     const bool ordered = !any && q->self->order, ahead = q->self->prefetch;
-    uint32_t top = 1;
     RtWideRef ref = 0;
-    do {
-        if (rt_wide_kind(ref) == RT_WIDE_NODE) {
-            const RtWideNode *node = rt_wide_node(&tree, ref);
-            RtFloat8 enter;
-            uint32_t mask = hit_children(node, f, &enter);
-            RT_COUNT(tally, steps, 1);
-            RT_COUNT(tally, extent_tests, node->count);
-            if (RT_OBSERVED(tally)) observe_node(node, ref, mask);
-            if (mask == 0) {
-                ref = pop(f, &top, any);
-            } else if ((mask & (mask - 1)) == 0) {
-                ref = node->child[__builtin_ctz(mask)];
-            } else {
-                uint32_t lane = choose_child(mask, enter, ordered), others = mask & ~(1u << lane);
-                ref = node->child[lane];
-                push(f, top, node, others, enter, any);
-                top += (uint32_t)__builtin_popcount(others);
-                if (ahead) prefetch(&tree, f->stack[top - 1]);
-            }
-            continue;
-        }
-        count_leaf(tally, &tree, q->geometry, ref);
+    for (;;) {
+        if (rt_wide_kind(ref) == RT_WIDE_NODE) ref = find_leaf(f, &tree, ref, any, ordered, ahead, fused);
+        if (ref == RT_WIDE_DONE) return;
         if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) {
             const RtWideTriangles *blocks = rt_wide_leaf_at(&tree, ref);
             uint32_t mask = prefilter_leaf(blocks, ref, f);
-            if (test_triangles(blocks, mask, f, q, any, tally)) return;
+            if (mask && test_triangles(blocks, mask, f, q, any, NULL)) return;
         } else if (rt_wide_kind(ref) == RT_WIDE_SPHERES) {
-            if (test_spheres(q, ref, f, any, tally)) return;
-        } else if (test_objects(q, ref, state_ray(f, q), any, &f->best, tally)) {
+            if (test_spheres(q, ref, f, any, NULL)) return;
+        } else if (test_objects(q, ref, state_ray(f, q), any, &f->best, NULL)) {
             return;
         }
         if (!any) f->limit = rt_minf(f->best.t, f->limit);
-        ref = pop(f, &top, any);
-    } while (ref != RT_WIDE_DONE);
+        do ref = f->stack[--f->top];
+        while (!any && f->enter[f->top] > f->limit);
+    }
 }
 
-RT_KERNEL void trace_one_by_one(const Query *q, size_t count, bool any, bool counted) {
+/* Whether the box tests of this ray may be fused, and then prepares it for that. */
+RT_KERNEL bool fuse(const Query *q, RayState *f) {
+    const RtFloat4 inv = rt_loadu4(f->inv), size = rt_abs(inv);
+    if (!q->self->fused || rt_bits((size < 0x1p-40f) | (size > 0x1p40f)) & 7) return false;
+    for (int a = 0; a < 3; a++) {
+        f->org_near[a] *= f->inv[a];
+        f->org_far[a] *= f->inv[a];
+    }
+    return true;
+}
+
+RT_KERNEL void trace_one_by_one(const Query *q, size_t count, bool any) {
     RayState *f = q->scratch->own;
     for (size_t i = 0; i < count; i++) {
-        RtTally *tally = counted ? &q->tallies[q->rays[i].kind] : NULL;
-        if (init_ray(f, q, i, any, tally)) trace_one(q, f, any, counted);
-        finish_ray(q, f, any, counted);
+        if (init_ray(f, q, i, any, NULL)) {
+            if (RT_FUSES && fuse(q, f))
+                trace_one(q, f, any, true);
+            else
+                trace_one(q, f, any, false);
+        }
+        finish_ray(q, f, any, false);
     }
 }
 
@@ -361,8 +429,8 @@ RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay
     Scratch *own = scratch->own;
     const Query q = {self,    tree,        &accel->scene->geometry, scratch, rays, hits, occluders,
                      tallies, &own->source};
-    if (self->in_flight == 1) {
-        trace_one_by_one(&q, count, any, counted);
+    if (self->in_flight == 1 && !counted) {
+        trace_one_by_one(&q, count, any);
         return;
     }
     RateEstimate *estimate = &own->estimates[count > 0 ? rays[0].kind : 0];

@@ -242,6 +242,22 @@ RT_INLINE uint32_t rt_bits_int16(RtInt16 mask) {
 }
 #endif
 
+/* ---- products less a number, rounded once ----
+ *
+ * rt_fused_less8(a, b, c): a * b - c, where RT_FUSES */
+
+#if defined(__FMA__)
+#define RT_FUSES 1
+RT_INLINE RtFloat8 rt_fused_less8(RtFloat8 a, RtFloat8 b, RtFloat8 c) {
+    return _mm256_fmsub_ps(a, b, c);
+}
+#else
+#define RT_FUSES 0
+RT_INLINE RtFloat8 rt_fused_less8(RtFloat8 a, RtFloat8 b, RtFloat8 c) {
+    return a * b - c;
+}
+#endif
+
 /* ---- square roots of doubles ---- */
 
 #if defined(__SSE2__)
