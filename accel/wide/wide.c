@@ -98,10 +98,14 @@ static RtStatus available(const RtValue *values, RtError *error) {
     return rt_isa_available(values[PARAM_ISA], error);
 }
 
-/* Scenes for which the proof of fused box tests holds (ray.h). */
+/* Is it a scene of fused box tests (ray.h)? */
 static bool may_fuse(const RtGeometry *g) {
-    const RtVec3 size = rt_sub(g->box.hi, g->box.lo);
-    return g->triangle_count == g->object_count && rt_maxf(rt_maxf(size.x, size.y), size.z) >= 0x1p-29f;
+    float side = 0, farthest = 0;
+    for (int a = 0; a < 3; a++) {
+        side = rt_maxf(g->box.hi.at[a] - g->box.lo.at[a], side);
+        farthest = rt_maxf(rt_maxf(-g->box.lo.at[a], g->box.hi.at[a]), farthest);
+    }
+    return g->triangle_count == g->object_count && side >= 0x1p-29f && farthest <= 0x1p20f * side;
 }
 
 static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {

@@ -129,7 +129,8 @@ RT_KERNEL void trace_one(const Query *q, RayState *f, bool any, bool fused) {
 /* Whether the box tests of this ray may be fused, and then prepares it for that. */
 RT_KERNEL bool fuse(const Query *q, RayState *f) {
     const RtFloat4 inv = rt_loadu4(f->inv), size = rt_abs(inv);
-    if (!q->self->fused || rt_bits((size < 0x1p-40f) | (size > 0x1p40f)) & 7) return false;
+    if (!q->self->fused || q->tree->split_refs || rt_bits((size < 0x1p-40f) | (size > 0x1p40f)) & 7)
+        return false;
     for (int a = 0; a < 3; a++) {
         f->org_near[a] *= f->inv[a];
         f->org_far[a] *= f->inv[a];
@@ -429,7 +430,7 @@ RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay
     Scratch *own = scratch->own;
     const Query q = {self,    tree,        &accel->scene->geometry, scratch, rays, hits, occluders,
                      tallies, &own->source};
-    if (self->in_flight == 1 && !counted) {
+    if (!counted && (self->in_flight == 1 || count == 1)) {
         trace_one_by_one(&q, count, any);
         return;
     }
