@@ -146,9 +146,9 @@ def _new(what: str, needs: ctypes.c_void_p | None, function: str, *arguments: An
 
 class Rays:
     """Valid rays of one `kind`. `numpy.asarray(rays)` is a view of them: float32, (N, 8), read-only. rays[index] are
-    `Rays` of the same kind, by a number, a slice, a mask or an array of numbers. `source`, uint32, (N,), read-only: a
-    recorded primary ray's sample, row * columns + column in the image; a shadow ray's light; else 0. `fingerprint` is a
-    hash: equal rays have the same on every machine."""
+    `Rays` of the same kind, by a number, a slice, a mask or an array of numbers. `source`, uint32, (N,), read-only: of
+    recorded primary, diffuse and occlusion rays their sample, row * columns + column in the image; of shadow rays their
+    light; else 0. `fingerprint` is a hash: equal rays have the same on every machine."""
 
     def __init__(self, rays: ArrayLike, kind: str = "random", *, _source: Any = 0, _recording: tuple = ()) -> None:
         if kind not in KINDS:
@@ -252,7 +252,7 @@ class Accelerator:
     def record(self, kind: str = "primary", depth: int = 5, seed: int = 1, limit: int = 100000, threads: int = 0) -> Rays:
         """The rays of one kind in a frame of `depth` levels, as `raytally bench` records them. If there are more than
         `limit`, runs of 256 are left out. Their order is that of tracing: tile by tile, not row by row. `Rays.source`
-        tells the samples of primary rays, and the lights of shadow rays. The accelerator must be exact."""
+        tells their samples. The accelerator must be exact."""
         how = _options("IiQQ", *_checked(depth=depth, threads=threads, seed=seed, limit=limit))
         return Rays((), kind, _recording=(self._handle, how))
 

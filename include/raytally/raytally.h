@@ -283,10 +283,10 @@ typedef struct raytally_record_options {
     { sizeof(raytally_record_options), 5, 0, 1, 100000 }
 
 /** Records the rays of one kind from a frame of the accelerator's scene, in the order of tracing: tile by
- * tile, not row by row; `source` tells the sample of a primary ray. Or random rays, chords of the scene's
- * bounding sphere, as many as the limit. The accelerator must be exact. If the
- * scene produces no rays of the kind, the array is empty. `how` may be NULL: RAYTALLY_RECORD_DEFAULTS. The
- * rays are the same on every machine, and those of `raytally bench`. */
+ * tile, not row by row (raytally_ray.source tells their samples); or random rays, chords of the scene's
+ * bounding sphere, as many as the limit. The accelerator must be exact. If the scene produces no rays of the
+ * kind, the array is empty. `how` may be NULL: RAYTALLY_RECORD_DEFAULTS. The rays are the same on every
+ * machine, and those of `raytally bench`. */
 RAYTALLY_API raytally_status raytally_rays_record(const raytally_accelerator *accelerator,
                                                   enum raytally_ray_kind kind,
                                                   const raytally_record_options *how, raytally_rays **out,

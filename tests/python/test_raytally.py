@@ -108,7 +108,9 @@ class Program(Case):
         across = directions.reshape(64, 64, 3)
         for steps in (numpy.diff(across, axis=0), numpy.diff(across, axis=1)):  # the same everywhere in the image
             self.assertTrue((abs(steps - steps[0, 0]) < 1e-5).all())
-        self.assertEqual(set(self.accel.record("diffuse").source), {0})
+        self.assertEqual(set(self.accel.record("diffuse").source), set(rays.source[self.accel.occluded(rays)]))
+        self.assertEqual(set(self.accel.record("shadow").source), {0, 1, 2})  # lights
+        self.assertEqual(set(self.accel.record("reflection").source), {0})
 
     def test_chosen_rays_keep_their_kind_and_source(self):
         item = self.scene.accelerator("item+bvh")
@@ -119,6 +121,8 @@ class Program(Case):
             self.assertEqual(chosen.kind, "primary")
             self.assert_same(numpy.asarray(chosen), array[index])
             self.assert_same(chosen.source, rays.source[index])
+            with self.assertRaises(ValueError):
+                chosen.source[...] = 7
             self.assertEqual(item.counts(chosen)["passed_on"].sum(), 0)
         self.assertEqual((len(rays[5]), rays[5].source[0]), (1, rays.source[5]))
         self.assertEqual(len(list(rays[:3])), 3)
@@ -202,7 +206,8 @@ class Arrays(Case):
         rays[1, 4:7] = 0
         self.assert_refused(r"ray 1 \(the first is 0\) is not valid: its direction is zero", accel.nearest, rays)
         for corner in (-1, 2**32):
-            self.assert_refused(f"triangles={corner}: expected an integer in 0..4294967295", raytally.Scene.from_arrays, [[0, 0, 0]], [[0, 0, corner]])
+            self.assert_refused(f"triangles={corner}: expected an integer in 0..4294967295", raytally.Scene.from_arrays,
+                                [[0, 0, 0]], [[0, 0, corner]])
         self.assert_refused("float64: expected integers", raytally.Scene.from_arrays, [[0, 0, 0]], [[0, 0, 0.5]])
         self.assert_refused("corner 2 is vertex 3", raytally.Scene.from_arrays, [[0, 0, 0]] * 3, [[0, 1, 3]])
         self.assert_refused("sphere 0", raytally.Scene.from_arrays, spheres=[[0, 0, 0, 0]])
@@ -231,7 +236,7 @@ class Errors(Case):
         self.assert_refused("width=4294967312", two_objects().set_sampling, 2**32 + 16, 16)
         for function in (raytally.Scene, scene.accelerator, scene.verify, raytally.load_plugin):
             self.assert_refused("no zero character", function, "bvh\0")
-        self.assert_refused("eye, at, up: .*type <U", two_objects().set_camera, "009", "000", "010", 40)
+        self.assert_refused("eye, at, up: .*type <U", two_objects().set_camera, [*"009"], [*"000"], [*"010"], 40)
         self.assert_refused("eye, at, up: ", two_objects().set_camera, [0, 9], [0, 0], [0, 1], 40)
         accel.nearest(rays_from([0, 0, 5]), threads=numpy.int8(1))
         self.assert_refused("no accelerator", raytally.time_all, [], rays_from([0, 0, 5]))
