@@ -145,10 +145,10 @@ def _new(what: str, needs: ctypes.c_void_p | None, function: str, *arguments: An
 
 
 class Rays:
-    """Valid rays of one `kind`. `numpy.asarray(rays)` is a view of them: float32, (N, 8), read-only. rays[index] are
-    `Rays` of the same kind, by a number, a slice, a mask or an array of numbers. `source`, uint32, (N,), read-only: of
-    recorded primary, diffuse and occlusion rays their sample, row * columns + column in the image; of shadow rays their
-    light; else 0. `fingerprint` is a hash: equal rays have the same on every machine."""
+    """Valid rays of one `kind`, one of KINDS: an array is copied and checked. `numpy.asarray(rays)` is a view of them:
+    float32, (N, 8), read-only. rays[index] are `Rays` of the same kind, by a number, a slice, a mask or an array of numbers.
+    `source`, uint32, (N,), read-only: of recorded primary, diffuse and occlusion rays their sample, row * columns + column in
+    the image; of shadow rays their light; else 0. `fingerprint` is a hash: equal rays have the same on every machine."""
 
     def __init__(self, rays: ArrayLike, kind: str = "random", *, _source: Any = 0, _recording: tuple = ()) -> None:
         if kind not in KINDS:
