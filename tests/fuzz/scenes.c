@@ -101,14 +101,14 @@ void fuzz_scene(const Input *input) {
 
 static const char of_library[] = "mtllib library.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
                                  "usemtl one\nf 1/1 2/2 3/3\nusemtl two words\nf 1/1 2/2 3/3\n";
-static const char image[] = RT_SOURCE_DIR "/scenes/globe.png";
 
-/* An image to name, and a mesh that names the library. */
+/* An image to name, from the working folder of tests/fuzz.sh, and a mesh that names the library. */
 void fuzz_prepare_mtl(void) {
     RtError error;
     char *png;
     size_t size;
-    if (rt_file_read(image, 1 << 24, &png, &size, &error) != RT_OK) fuzz_fail("%s", error.message);
+    if (rt_file_read("scenes/globe.png", 1 << 24, &png, &size, &error) != RT_OK)
+        fuzz_fail("%s", error.message);
     fuzz_write("image.png", png, size);
     fuzz_write("mesh.obj", of_library, strlen(of_library));
     rt_free(png);
