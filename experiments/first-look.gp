@@ -28,7 +28,7 @@ at(s) = here(s) ? row_of(strcol("accel")) : NaN
 least_of(a, b) = a < b ? a : b
 most_of(a, b) = a > b ? a : b
 
-left = 130.0; gap = 14.0; line = 19.0; head = 62.0; foot = 12.0; top = 34.0
+left = 130.0; gap = 14.0; line = 19.0; head = 56.0; foot = 14.0; top = 34.0
 panel_height = line * rows
 panel_width = (960 - left) / n_scenes
 
@@ -38,7 +38,7 @@ do for [i = 1:words(headings) / 2] { set label 200 + i word(groups, int(word(hea
 left textcolor rgb soft }"
 
 # Puts the figures of the axis above a panel, below the name of its scene.
-figures_above = "set xtics offset 0, screen (panel_height + 20) / height"
+figures_above = "set xtics offset 0, screen (panel_height + 17) / height"
 
 # ---- a whole frame: time, and tests ----
 
@@ -103,7 +103,7 @@ do for [m = 1:2] {
       eval names
       eval (m == 1 ? legend : tests_legend)
     }
-    set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 1.9 font ",14" textcolor rgb ink
+    set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 1.6 font ",14" textcolor rgb ink
     if (m == 1) {
       plot "frame.csv" using (least):(at(s)):(least):(column("ms")):(at(s) - 0.36):(at(s) + 0.36):(paint(is_best(s))) \
              with boxxyerror linecolor rgb variable, \
@@ -145,7 +145,7 @@ do for [s = 1:n_scenes] {
     set label 1 "times as fast as ".without.", by kind of rays" at screen 6.0 / 960, screen 1 - 24.0 / height left font ",15" textcolor rgb ink
     set key at screen 0.995, screen 1 - 6.0 / height right top horizontal maxrows 1 samplen 0.5 width 0 textcolor rgb ink
   } else { unset key }
-  set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 1.9 font ",14" textcolor rgb ink
+  set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 1.6 font ",14" textcolor rgb ink
   plot for [p = 1:n_parts] "frame.csv" using (figure_of(s, part[p])):(row_of(strcol("accel"))) with points \
          pointtype mark(p) pointsize 0.9 linecolor rgb hue(p) title part_title[p]
 }
