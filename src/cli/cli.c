@@ -148,12 +148,13 @@ json_t *rt_cli_vector_json(RtVec3 v) {
 /* Reads x[0..8), with commas or spaces between; returns how many there are, 0 if `text` is something else. */
 static int read_numbers(const char *text, float x[8]) {
     char *end;
-    int count = 0;
-    for (; count < 8 && *text; text = end + strspn(end, ", ")) {
+    for (int count = 0; count < 8; text = end + (*end == ',')) {
         x[count++] = strtof(text, &end);
-        if (end == text || !strchr(", ", *end)) return 0; /* finds the end, too */
+        if (end == text) return 0;
+        end += strspn(end, " ");
+        if (!*end) return count;
     }
-    return *text ? 0 : count;
+    return 0;
 }
 
 static RtStatus row_of_file(const char *text, const char *colon, RtRay *ray, RtError *error) {

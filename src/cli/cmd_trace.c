@@ -86,22 +86,39 @@ static void print_span(const RtPath *path, const RtPathRow *row, uint32_t i) {
     print_t(leave);
 }
 
-/* Of a test of a polygon whose box the ray meets: where its plane is met, in the projection, and the edges
- * that a half-line from there crosses. */
-static void print_projection(const RtPath *path, const RtPathRow *row, const RtGeometry *g) {
-    if (row->kind != RT_TRACED_OBJECT_TEST || row->index >= g->object_count || rt_path_row_spans(row) == 0)
-        return;
-    if (rt_ref_shape(g->objects[row->index]) != RT_SHAPE_POLYGON) return;
-    const uint32_t index = rt_ref_index(g->objects[row->index]);
-    const RtPolygon *polygon = &g->polygons[index];
+/* Where the ray meets the plane of a polygon, in the projection, and the edges that a half-line from there
+ * crosses. */
+static void print_projection(const RtPath *path, const RtPolygon *polygon, const RtVec3 *vertices) {
     const RtVec3d org = rt_widen(path->ray.org), dir = rt_widen(path->ray.dir);
     const double at = rt_dotd(polygon->normal, rt_subd(polygon->center, org)) / rt_dotd(polygon->normal, dir);
     if (!isfinite(at)) return;
     const RtVec3d point = rt_add_scaledd(org, dir, at);
-    const uint32_t crossed = rt_polygon_crossings(polygon, rt_polygon_vertices(g, index), point);
-    printf("%23s  its plane at t = %.6g; projected to %c, %c: (%.6g, %.6g), %u edge%s crossed\n", "", at,
-           "xyz"[polygon->u], "xyz"[polygon->v], point.at[polygon->u], point.at[polygon->v], crossed,
-           rt_plural(crossed));
+    const uint32_t crossed = rt_polygon_crossings(polygon, vertices, point);
+    printf("%23s  its plane at t = %.6g; projected to %c, %c: (%.6g, %.6g), ", "", at, "xyz"[polygon->u],
+           "xyz"[polygon->v], point.at[polygon->u], point.at[polygon->v]);
+    if (crossed == RT_ON_EDGE)
+        puts("on an edge");
+    else
+        printf("%u edge%s crossed\n", crossed, rt_plural(crossed));
+}
+
+static void print_roots(const RtPath *path, const RtSphere *sphere) {
+    double roots[2];
+    const int count = raytally_sphere_roots((const float *)sphere, path->ray.org.at, path->ray.dir.at, roots);
+    printf("%23s  its equation has ", "");
+    if (count == 0) puts("no root");
+    if (count == 1) printf("the root t = %.6g\n", roots[0]);
+    if (count == 2) printf("the roots t = %.6g and %.6g\n", roots[0], roots[1]);
+}
+
+/* How the hit function of a sphere or polygon finds its answer, if the ray meets the object's box. */
+static void print_test(const RtPath *path, const RtPathRow *row, const RtGeometry *g) {
+    if (row->kind != RT_TRACED_OBJECT_TEST || row->index >= g->object_count || rt_path_row_spans(row) == 0)
+        return;
+    const uint32_t index = rt_ref_index(g->objects[row->index]);
+    const RtShape shape = rt_ref_shape(g->objects[row->index]);
+    if (shape == RT_SHAPE_SPHERE) print_roots(path, &g->spheres[index]);
+    if (shape == RT_SHAPE_POLYGON) print_projection(path, &g->polygons[index], rt_polygon_vertices(g, index));
 }
 
 static void print_row(const RtPath *path, uint32_t index, const RtGeometry *g) {
@@ -128,12 +145,12 @@ static void print_row(const RtPath *path, uint32_t index, const RtGeometry *g) {
         print_span(path, row, i);
         putchar('\n');
     }
-    print_projection(path, row, g);
+    print_test(path, row, g);
 }
 
 static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g) {
     uint32_t left_out = 0, joined = 0;
-    printf("\n%5s  %-14s  %-24s  %-20s  %-18s  %9s\n", "", "", "", " ray inside, t", "", "nearest t");
+    printf("\n%5s  %-14s  %-24s  %-20s  %-18s  %9s\n", "", "", "", " in box or solid, t", "", "nearest t");
     for (uint32_t i = 0, run; i < path->count; i += run) {
         const RtPathRow *row = &path->rows[i];
         bool hits = row->kind == RT_TRACED_OBJECT_TEST && row->met;

@@ -57,6 +57,8 @@ static void finish(void *options, struct argp_state *state) {
         argp_error(state, "--hits-from are hits of the rays of --rays-from on one SCENE: give both");
     if (o->work.differing_rays && (o->given_count != 1 || o->work.start == RT_START_RESUME))
         argp_error(state, "--differing-rays writes rays of one SCENE, all in this run: no --resume");
+    if (o->work.differing_rays && o->rays_from && strcmp(o->work.differing_rays, o->rays_from) == 0)
+        argp_error(state, "'%s' is named twice: give each file its own name", o->rays_from);
     if (o->work.start != RT_START_FRESH && !o->work.folder)
         argp_error(state, "--resume and --force need the run's directory: --out DIR");
 }
@@ -77,8 +79,9 @@ static const RtOption options[] = {
      "Each ray is traced for its nearest hit and for any hit"},
     {"hits-from", 0, "FILE.npy", RT_TO_TEXT(hits_from),
      "Judge the hits of another program: those of --rays-from on SCENE, a row per ray with the fields t (in "
-     "lengths of the direction) and object (-1 for a miss), as `raytally bench --hits` writes it; or "
-     "float32, t alone (inf for a miss). No accelerator is verified unless --accel names one"},
+     "lengths of the direction) and object (-1 for a miss), as `raytally bench --hits` writes it, or in a "
+     "text (.csv) with these columns; or float32, t alone (inf for a miss). No accelerator is verified "
+     "unless --accel names one"},
     {"differing-rays", 0, "FILE.npy", RT_TO_PATH(work.differing_rays, RT_CLI_ROWS),
      "Write the rays whose answer is marginal or wrong to FILE, as --rays-from and `raytally trace --ray "
      "FILE.npy:0` read it"},
@@ -314,7 +317,8 @@ static void print_near(const json_t *wrong, const char *scene) {
     const char *path = rt_json_text(wrong, "replay", "");
     const long long near = json_integer_value(json_object_get(wrong, "objects_left"));
     printf("    %lld object%s near the ray%s. To see it:\n    raytally trace '%s' --ray ", near,
-           near == 1 ? " is" : "s are", *path ? ", kept in a scene of its own" : "", *path ? path : scene);
+           near == 1 ? " is" : "s are", *path ? ", kept in a scene where they are 0, 1, ..." : "",
+           *path ? path : scene);
     for (size_t a = 0; a < 3; a++) printf("%s,", json_string_value(json_array_get(org, a)));
     for (size_t a = 0; a < 3; a++) printf("%s,", json_string_value(json_array_get(dir, a)));
     printf("%s,%s --svg ray.svg\n", rt_json_text(wrong, "tmin", ""), rt_json_text(wrong, "tmax", ""));
@@ -360,6 +364,8 @@ static void print_judged(const RtVerifySum *sum) {
         printf("%s%s %" PRIu64, between, rt_fault_name((RtFault)f), sum->faults[f]);
         between = ", ";
     }
+    if (sum->largest_off > 1e-3)
+        printf("; t is off by up to %.2g %%, which rounding explains here", 100 * sum->largest_off);
     putchar('\n');
     for (int s = 0; s < RT_SIDE_COUNT; s++) differ += sum->sides[s];
     if (differ == 0) return;

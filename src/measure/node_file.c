@@ -10,57 +10,43 @@
 
 #define NONE UINT32_MAX
 
-typedef struct Node {
-    uint32_t number, next; /* the next of its level, or NONE */
-    uint32_t lacks;        /* children that have not come yet */
-} Node;
+enum { MOST_LEVELS = 256 }; /* deeper nodes have no parent */
 
-/* The first and the last node of a level that may lack children. */
-typedef struct Level {
-    uint32_t first, last;
-} Level;
+/* A node with children. */
+typedef struct Parent {
+    uint32_t number, level, lacks; /* lacks: children that have not come yet */
+} Parent;
 
 typedef struct Nodes {
-    Node *nodes;   /* [count] those that have children */
-    Level *levels; /* [level_count] */
-    uint32_t count, capacity, level_count, level_capacity, written;
-    bool lists; /* the lengths of leaves are known */
+    Parent *parents; /* [count] in the order of the file */
+    uint32_t count, capacity, written;
+    uint32_t next[MOST_LEVELS]; /* of each level: no parent before this one lacks a child */
+    bool lists;                 /* the lengths of leaves are known */
     FILE *file;
     RtStatus status;
     RtError *error;
 } Nodes;
 
-/* Takes a child from the first node of the level that lacks one; NONE if there is none. */
+/* The first node of the level that lacks a child, which it gets; NONE if there is none. */
 static uint32_t take_parent(Nodes *nodes, uint32_t level) {
-    if (level >= nodes->level_count) return NONE;
-    uint32_t *first = &nodes->levels[level].first;
-    while (*first != NONE && nodes->nodes[*first].lacks == 0) *first = nodes->nodes[*first].next;
-    if (*first == NONE) return NONE;
-    nodes->nodes[*first].lacks--;
-    return nodes->nodes[*first].number;
-}
-
-/* Adds a node with children to the end of its level. */
-static RtStatus add_parent(Nodes *nodes, const RtBoxView *view) {
-    const Level none = {NONE, NONE};
-    const Node node = {nodes->written, NONE, view->children};
-    while (nodes->level_count <= view->depth)
-        RT_TRY(rt_append(&nodes->levels, &nodes->level_count, &nodes->level_capacity, &none, sizeof none,
-                         nodes->error));
-    Level *level = &nodes->levels[view->depth];
-    if (level->first == NONE)
-        level->first = nodes->count;
-    else
-        nodes->nodes[level->last].next = nodes->count;
-    level->last = nodes->count;
-    return rt_append(&nodes->nodes, &nodes->count, &nodes->capacity, &node, sizeof node, nodes->error);
+    for (uint32_t *at = &nodes->next[level]; *at < nodes->count; ++*at) {
+        Parent *parent = &nodes->parents[*at];
+        if (parent->level != level || parent->lacks == 0) continue;
+        parent->lacks--;
+        return parent->number;
+    }
+    return NONE;
 }
 
 static void write_node(void *context, const RtBoxView *view) {
     Nodes *nodes = context;
     const RtBox *box = view->box;
-    const uint32_t parent = view->depth > 0 ? take_parent(nodes, view->depth - 1) : NONE;
-    if (nodes->status == RT_OK && view->children > 0) nodes->status = add_parent(nodes, view);
+    const Parent own = {nodes->written, view->depth, view->children};
+    const bool known = view->depth > 0 && view->depth <= MOST_LEVELS;
+    const uint32_t parent = known ? take_parent(nodes, view->depth - 1) : NONE;
+    if (nodes->status == RT_OK && own.lacks > 0)
+        nodes->status =
+            rt_append(&nodes->parents, &nodes->count, &nodes->capacity, &own, sizeof own, nodes->error);
     fprintf(nodes->file, "%" PRIu32 ",", nodes->written++);
     if (parent != NONE) fprintf(nodes->file, "%" PRIu32, parent);
     fprintf(nodes->file, ",%" PRIu32 ",%s,%" PRIu32 ",", view->depth, view->leaf ? "true" : "false",
@@ -90,7 +76,6 @@ RtStatus rt_nodes_save(const RtAccel *accel, const char *path, uint32_t *count, 
     else
         rt_output_discard(&output);
     *count = nodes.written;
-    rt_free(nodes.nodes);
-    rt_free(nodes.levels);
+    rt_free(nodes.parents);
     return nodes.status;
 }

@@ -212,9 +212,11 @@ static RtStatus open_text(Source *s, RtError *error) {
     uint32_t found = 0;
     read_line(s->file, line);
     if (strncmp(line, BYTE_ORDER_MARK, 3) == 0) rest += 3;
-    for (const char *word; s->column_count < MOST_COLUMNS && (word = strsep(&rest, ",")); s->column_count++) {
+    for (char *word; s->column_count < MOST_COLUMNS && (word = strsep(&rest, ",")); s->column_count++) {
         int k = s->form->count - 1;
-        while (k >= 0 && strcmp(word + strspn(word, " "), s->form->names[k]) != 0) k--;
+        word += strspn(word, " ");
+        word[strcspn(word, " ")] = '\0';
+        while (k >= 0 && strcmp(word, s->form->names[k]) != 0) k--;
         s->columns[s->column_count] = k;
         if (k < 0) continue;
         if (found >> k & 1)

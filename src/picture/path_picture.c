@@ -229,9 +229,9 @@ static void draw_ray(const Drawing *d) {
     const double left = (w->x - point_at(d, w, 0).x) / (w->section.scale * d->speed); /* t at the left side */
     const double hit = (double)d->path->hit.t, last = fmin(fmin((double)ray->tmax, d->farthest), hit);
     const RtPoint from = point_at(d, w, fmax((double)ray->tmin, left)), to = point_at(d, w, last);
-    const double back =
-        isfinite(hit) ? fmin(5.5 / hypot(to.x - from.x, to.y - from.y), 1) : 0; /* the dot's rim */
-    const RtPoint tip = {to.x + back * (from.x - to.x), to.y + back * (from.y - to.y)};
+    const double dx = from.x - to.x, dy = from.y - to.y;
+    const double back = isfinite(hit) ? fmin(5.5 / sqrt(dx * dx + dy * dy), 1) : 0; /* the dot's rim */
+    const RtPoint tip = {to.x + back * dx, to.y + back * dy};
     rt_add_line(d->cairo, from, tip);
     rt_paint(d->cairo, (RtStyle){RT_BLACK, 1.5, 0, false});
     rt_draw_arrow_head(d->cairo, from, tip, d->window == &d->detail ? 12 : 7, RT_BLACK);

@@ -182,7 +182,7 @@ uint32_t rt_path_row_spans(const RtPathRow *row) {
 }
 
 void rt_path_row_span(const RtPath *path, const RtPathRow *row, uint32_t i, double *enter, double *leave) {
-    const float *ends = row->listed ? path->ends + row->first_end + 2 * i : NULL;
+    const float *ends = row->listed ? path->ends + row->first_end + (size_t)2 * i : NULL;
     *enter = ends ? (double)ends[0] : row->enter;
     *leave = ends ? (double)ends[1] : row->leave;
 }

@@ -192,22 +192,24 @@ static double at_least(uint64_t found, uint64_t sampled, uint64_t rays) {
 bool rt_certain_suffices(const RtCertain *c, uint64_t rays, bool given) {
     double hits = c->rays > 0 ? (double)c->hits / (double)c->rays * (double)rays : 0;
     double needed = given ? (double)rays / 2 : NEEDED;
-    double needed_hits = given ? hits / 2 : fmin(hits / 10, NEEDED);
+    double needed_hits = given ? fmax(hits, 1) / 2 : fmin(hits / 10, NEEDED);
     return at_least(c->certain, c->rays, rays) >= needed &&
            at_least(c->must_hit, c->rays, rays) >= needed_hits;
 }
 
 void rt_certain_undecided(const RtCertain *c, uint64_t rays, bool given, bool absolute, char *out,
                           size_t size) {
-    snprintf(out, size,
-             "undecided: of %" PRIu64 " %srays, %" PRIu64 " of which hit, %" PRIu64
-             " have one answer, whatever rounding%s does, and %" PRIu64
-             " must hit something. Needed are %s. %s",
-             c->rays, c->rays < rays ? "sampled " : "", c->hits, c->certain,
-             absolute ? " in absolute coordinates" : "", c->must_hit,
-             given ? "half of the rays and half of the hits" : "1000 rays, and a tenth of the hits or 1000",
-             given ? "Use rays that pass farther from edges and start farther from surfaces"
-                   : "Trace more rays, or move the scene nearer to the origin of coordinates");
+    snprintf(
+        out, size,
+        "undecided: of %" PRIu64 " %srays, %" PRIu64 " of which hit, %" PRIu64
+        " have one answer, whatever rounding%s does, and %" PRIu64 " must hit something. Needed are %s. %s",
+        c->rays, c->rays < rays ? "sampled " : "", c->hits, c->certain,
+        absolute ? " in absolute coordinates" : "", c->must_hit,
+        given ? "half of the rays and half of the hits, of which there must be some"
+              : "1000 rays, and a tenth of the hits or 1000",
+        given
+            ? "Use rays that hit, farther from edges and coincident objects, and start farther from surfaces"
+            : "Trace more rays, or move the scene nearer to the origin of coordinates");
 }
 
 /* ---- parts of a result ---- */
@@ -225,6 +227,7 @@ static RtEquivalence sum_of_parts(const Job *job) {
         for (int v = 0; v < RT_VERDICT_COUNT; v++) sum.verdicts[v] += part->verdicts[v];
         for (int s = 0; s < RT_SIDE_COUNT; s++) sum.sides[s] += part->sides[s];
         sum.missed += part->missed;
+        sum.largest_off = fmax(sum.largest_off, part->largest_off);
         for (int f = 0; f < RT_FAULT_COUNT; f++) sum.faults[f] += part->faults[f];
         if (part->any_wrong && !sum.any_wrong) sum.first_wrong = part->first_wrong;
         sum.any_wrong |= part->any_wrong;
@@ -309,6 +312,11 @@ static RtStatus add_side(RtJudge judge, RtHit expected, RtHit got, RtEquivalence
     return RT_OK;
 }
 
+static void add_difference(RtHit expected, RtHit got, RtEquivalence *part) {
+    const double off = fabs((double)got.t / (double)expected.t - 1); /* NaN of two misses */
+    if (off > part->largest_off && off < HUGE_VAL) part->largest_off = off;
+}
+
 static RtStatus add_fault(RtJudge judge, RtHit got, RtEquivalence *part, RtError *error) {
     RtFault fault;
     RT_TRY(rt_verdict_fault(judge, got, &fault, error));
@@ -336,6 +344,7 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
         RtVerdict verdict;
         RT_TRY(rt_answer_verdict(&worker->query, &wrong, &verdict, error));
         if (verdict == RT_WRONG) keep_wrong_answer(part, &wrong);
+        if (verdict < RT_MARGINAL) add_difference(expected, wrong.got, part);
         if (verdict >= RT_MARGINAL) doubtful = &worker->answers.hits[w][i];
         if (verdict == RT_WRONG) faulty = doubtful;
         if (verdict > worst) worst = verdict;
@@ -422,6 +431,7 @@ static RtStatus judge_chunk(void *context, size_t chunk, int thread, RtError *er
         part->rays++;
         part->verdicts[verdict]++;
         job->reference->differs[index] |= verdict >= RT_MARGINAL;
+        if (verdict < RT_MARGINAL) add_difference(expected, got, part);
         if (verdict >= RT_MARGINAL) RT_TRY(add_side(judge, expected, got, part, error));
         if (verdict < RT_WRONG) continue;
         RT_TRY(add_fault(judge, got, part, error));
@@ -488,6 +498,7 @@ json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, cons
         json_object_set_new(faults, rt_fault_name((RtFault)f), json_integer((json_int_t)result->faults[f]));
     }
     json_object_set_new(row, "exactly_right", sides);
+    json_object_set_new(row, "largest_off", json_real(result->largest_off));
     json_object_set_new(row, "missed", json_integer((json_int_t)result->missed));
     json_object_set_new(row, "faults", faults);
     json_object_set_new(row, "certain", json_null());

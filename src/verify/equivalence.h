@@ -44,7 +44,8 @@ typedef struct RtEquivalence {
     uint64_t verdicts[RT_VERDICT_COUNT]; /* sum to `rays` */
     /* Rays with a marginal or wrong answer to `nearest`, by which answer is exactly right. */
     uint64_t sides[RT_SIDE_COUNT];
-    uint64_t missed;                  /* of those rays: a miss, but the ray exactly hits */
+    uint64_t missed;    /* of those rays: a miss, but the ray exactly hits */
+    double largest_off; /* the largest part of t by which an equal answer or a tie, not exact, differs */
     uint64_t faults[RT_FAULT_COUNT]; /* of wrong answers to `nearest`, unless it is exact */
     uint64_t occluded_wrong;         /* rays, regardless of their verdict */
     bool any_wrong;

@@ -45,7 +45,7 @@ static inline RtJudge rt_judge(const RtGeometry *geometry, const RtRay *ray, boo
 #define RT_FAULTS(X)                                                                                         \
     X(LOST, lost, "a certain hit is missed")                                                                 \
     X(BEHIND, behind, "another object is certainly hit before")                                              \
-    X(BESIDE, beside, "the ray cannot hit the object")                                                       \
+    X(BESIDE, beside, "the ray cannot hit the object between tmin and tmax")                                 \
     X(DISPLACED, displaced, "the object may be hit, but not at that t")                                      \
     X(EDGE_ON, edge_on, "the triangle or polygon is seen edge on, and t lies outside its box")
 

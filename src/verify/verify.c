@@ -61,8 +61,14 @@ static RtStatus load_recorded(Run *run, RtError *error) {
     const RtVerify *v = run->verify;
     for (uint32_t i = 0; i < v->spec_count; i++) {
         if (!v->specs[i].recorded) continue;
-        return rt_hits_load(v->specs[i].spec, v->rays.count, run->scenes[0].geometry.object_count,
-                            &run->recorded, error);
+        RT_TRY(rt_hits_load(v->specs[i].spec, v->rays.count, run->scenes[0].geometry.object_count,
+                            &run->recorded, error));
+        for (uint64_t k = 0; k < v->rays.count; k++) {
+            if (run->recorded[k].object != RT_UNNAMED_OBJECT) continue;
+            run->observer->notice(run->observer->context,
+                                  "the hits name no objects: they are judged by t alone");
+            break;
+        }
     }
     return RT_OK;
 }

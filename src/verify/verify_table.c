@@ -57,6 +57,7 @@ static void add(RtVerifySum *sum, const json_t *row) {
     sum->occluded_wrong += number(row, "occluded_wrong");
     for (int s = 0; s < RT_SIDE_COUNT; s++) sum->sides[s] += number(sides, rt_side_name((RtSide)s));
     sum->missed += number(row, "missed");
+    sum->largest_off = fmax(sum->largest_off, json_number_value(json_object_get(row, "largest_off")));
     for (int f = 0; f < RT_FAULT_COUNT; f++) sum->faults[f] += number(faults, rt_fault_name((RtFault)f));
 }
 
@@ -128,6 +129,8 @@ static const RtTableColumn members[] = {
     MEMBER("refused", text,
            "why the accelerator refuses the scene (memory, a limit of its own); the row then has no rays"),
     MEMBER("exact", flag, "whether its answers must equal brute's bit for bit; if not, they get verdicts"),
+    MEMBER("missed", integer, "answers to nearest, marginal or wrong: a miss, though the ray exactly hits"),
+    MEMBER("largest_off", json, "the largest part of t by which an equal answer or a tie is off"),
 };
 enum { OF_CSV = 10, AGAINST = 2 };
 

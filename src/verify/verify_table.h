@@ -29,7 +29,8 @@ typedef struct RtVerifySum {
     uint64_t certain, must_hit, certain_of; /* rays of judged rows: certain among those examined */
     uint64_t verdicts[RT_VERDICT_COUNT];    /* of nearest; sum to `pairs` */
     uint64_t occluded_wrong;                /* pairs with a wrong answer to occluded */
-    uint64_t sides[RT_SIDE_COUNT], missed;   /* as in RtEquivalence */
+    uint64_t sides[RT_SIDE_COUNT], missed;  /* as in RtEquivalence */
+    double largest_off;
     uint64_t faults[RT_FAULT_COUNT];
 } RtVerifySum;
 

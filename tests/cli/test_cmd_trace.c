@@ -191,7 +191,7 @@ RT_TEST(a_row_of_a_file_of_rays_is_traced) {
         for (size_t a = 0; a < 3; a++)
             assert_true((float)json_number_value(json_array_get(org, a)) == rays[row][a]);
     }
-    assert_said(trace(arguments), 0, OUT ".txt", "test_cmd_trace.npy:1\nfrom (");
+    assert_said(trace(arguments), 0, OUT ".txt", "test_cmd_trace.npy:1\norg (");
     snprintf(arguments, sizeof arguments, "balls:size=2 --ray '%s:99999999'", file);
     assert_said(trace(arguments), 2, OUT ".err", "has no row '99999999': choose 0..");
 }

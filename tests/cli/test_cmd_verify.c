@@ -2,6 +2,8 @@
 /* raytally verify, as a user runs it: the document it prints, the exit codes, what it refuses. */
 #include "command_testing.h"
 
+#include "core/base/file.h"
+
 #include <jansson.h>
 #include <signal.h>
 
@@ -157,6 +159,7 @@ RT_TEST(what_cannot_be_verified_is_refused_before_anything_is_printed) {
         {"balls:size=1 tetra:size=1 --differing-rays x.npy", "of one SCENE"},
         {"balls:size=1 --differing-rays x.txt", "ends in .npy"},
         {"balls:size=1 --differing-rays x.npy --out d --resume", "no --resume"},
+        {"balls:size=1 --rays-from x.npy --differing-rays x.npy", "'x.npy' is named twice"},
         {"--replay nothing.json", "nothing.json"},
         {"--replay nothing.json balls", "takes no SCENE"},
         {"--replay nothing.json --json", "prints text"},
@@ -395,9 +398,9 @@ RT_TEST(the_first_wrong_hit_of_another_program_is_kept_as_a_scene_and_all_their_
     assert_int_equal(raytally_to("> '" OUT ".out'", "%s", again), 0);
     assert_non_null(strstr(text_of(OUT ".out"), expected));
     /* The same file of rays, and no wrong answer. */
-    assert_int_equal(
-        verify("balls:size=1 --accel bvh --rays-from '" OUT ".wrong.npy' --differing-rays '" OUT ".none.npy'"),
-        0);
+    assert_int_equal(verify("balls:size=1 --accel bvh --rays-from '" OUT ".wrong.npy' --differing-rays '" OUT
+                            ".none.npy'"),
+                     0);
     assert_non_null(strstr(text_of(OUT ".out"), "5 comparisons: nothing wrong"));
     assert_non_null(strstr(text_of(OUT ".err"), "none.npy: 0 rays that differ by more than a tie"));
 }
@@ -409,6 +412,43 @@ RT_TEST(hits_are_judged_again_only_if_they_are_the_same) {
     assert_non_null(strstr(text_of(OUT ".judged/verify.md"), "1600 comparisons are with hits of a file"));
     write_hits(1, 1.5f);
     assert_said(verify(GIVEN " --out '" OUT ".judged' --resume"), 2, OUT ".err", "with different hits_hash");
+}
+
+/* Judges these hits of rays on a scene, all written first. */
+static int judge_texts(const char *scene, const char *rays, const char *hits) {
+    const char *const texts[] = {scene, rays, hits}, *const names[] = {"scene.yaml", "rays.csv", "hits.csv"};
+    for (int i = 0; i < 3; i++) {
+        char path[512];
+        snprintf(path, sizeof path, OUT ".%s", names[i]);
+        assert_ok(rt_file_write(path, texts[i], strlen(texts[i]), error));
+    }
+    return verify("'" OUT ".scene.yaml' --rays-from '" OUT ".rays.csv' --hits-from '" OUT
+                  ".hits.csv' --differing-rays '" OUT ".differing.csv'");
+}
+
+RT_TEST(a_miss_between_two_triangles_is_no_fault_but_is_told_and_kept) {
+    const char *quad = "objects:\n"
+                       "  - triangle: {vertices: [[0, 0, 0], [1, 0, 0], [1, 1, 0]]}\n"
+                       "  - triangle: {vertices: [[0, 0, 0], [1, 1, 0], [0, 1, 0]]}\n";
+    assert_said(judge_texts(quad, "ox,oy,oz,dx,dy,dz\n.5,.5,1,0,0,-1\n.5,.25,1,0,0,-1\n", "t\ninf\n1\n"), 0,
+                OUT ".out", "by verdicts, nothing wrong but 1 exact hit missed\n");
+    assert_non_null(strstr(text_of(OUT ".err"), "the hits name no objects: they are judged by t alone"));
+    assert_non_null(strstr(text_of(OUT ".err"), "differing.csv: 1 ray that differs by more than a tie"));
+    assert_string_equal(text_of(OUT ".differing.csv"),
+                        "ox,oy,oz,tmin,dx,dy,dz,tmax\n0.5,0.5,1,0,0,0,-1,inf\n");
+}
+
+RT_TEST(rays_that_hit_nothing_decide_nothing) {
+    const char *sphere = "objects:\n  - sphere: {center: [0, 0, 0], radius: 1}\n";
+    assert_said(judge_texts(sphere, "ox,oy,oz,dx,dy,dz\n5,5,5,0,0,1\n", "t\ninf\n"), 1, OUT ".err",
+                "undecided: of 1 rays, 0 of which hit");
+}
+
+RT_TEST(how_far_rounding_lets_t_be_off_is_told) {
+    const char *floor =
+        "objects:\n  - triangle: {vertices: [[-1e5, -1e5, 0], [1e5, -1e5, 0], [0, 1e5, 0]]}\n";
+    assert_said(judge_texts(floor, "ox,oy,oz,dx,dy,dz\n1,1,1,0,0,-1\n", "t,object\n1.1,0\n"), 0, OUT ".out",
+                "; t is off by up to 10 %, which rounding explains here\n");
 }
 
 RT_TESTS(cmd_verify, NULL, NULL)

@@ -242,12 +242,13 @@ PLACE_TEST(columns_of_text_are_found_by_name_and_an_interval_may_be_left_out) {
 }
 
 PLACE_TEST(hits_as_text_have_an_object_or_t_alone) {
-    const char *const texts[] = {"object,t\n5,2\n-1,inf\n", "t,u\n2,0.5\ninf,0\n"};
-    for (size_t i = 0; i < 2; i++) {
+    const char *const texts[] = {"object,t\n5,2\n-1,inf\n", "t,u\n2,0.5\ninf,0\n",
+                                 "\xEF\xBB\xBFobject ,t\r\n5,2\r\n-1,inf\r\n"};
+    for (size_t i = 0; i < 3; i++) {
         OWNED_MEMORY RtHit *hits = NULL;
         Path path = write_text(place, texts[i]);
         assert_ok(rt_hits_load(path.text, 2, 6, &hits, error));
-        assert_true(hits[0].t == 2 && hits[0].object == (i == 0 ? 5 : RT_UNNAMED_OBJECT));
+        assert_true(hits[0].t == 2 && hits[0].object == (i == 1 ? RT_UNNAMED_OBJECT : 5));
         assert_true(hits[1].t == INFINITY && hits[1].object == RT_NO_OBJECT);
     }
 }
@@ -270,7 +271,8 @@ PLACE_TEST(text_without_its_columns_or_numbers_is_refused) {
         {"t,object\n1,2.5\n", "object is '2.5': no integer", true},
         {"t,object\n1,6\n", "there is no object 6", true},
         {"t\n-1\n", "a miss is written as infinity", true},
-        {"t\n1\n1\n", "2 hits for 1 ray", true}};
+        {"t\n1\n1\n", "2 hits for 1 ray", true},
+        {"t,object,t\n1,0,1\n", "the first line names 't' twice", true}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtRaySet set;
         RtHit *hits;

@@ -99,7 +99,8 @@ RT_TEST(materials_of_obj_with_an_image_are_read_and_others_ignored) {
                                  "f 1/1 2/2 3/3\nusemtl nothing\nf 1 2 3\n");
     const RtMaterial *m = scene.materials;
     assert_int_equal(scene.material_count, 3);
-    assert_int_equal(scene.warnings.count, 0);
+    assert_int_equal(scene.warnings.count, 1);
+    assert_non_null(strstr(scene.warnings.list[0].message, "options of map_Kd are ignored: -s 1 1 1"));
     static const uint32_t materials[] = {0, 1, 2, 0};
     assert_memory_equal(scene.material_of, materials, sizeof materials);
     assert_string_equal(m[1].name, "two");

@@ -172,7 +172,9 @@ RT_TEST(recorded_answers_are_equal_if_rounding_explains_them_with_or_without_an_
         record(*state, hits, named);
         assert_int_equal(judge(*state, hits).verdicts[RT_EQUAL], RAYS);
         hits[LAST].t = nextafterf(hits[LAST].t, INFINITY);
-        assert_int_equal(judge(*state, hits).verdicts[RT_EQUAL], RAYS);
+        const RtEquivalence e = judge(*state, hits);
+        assert_int_equal(e.verdicts[RT_EQUAL], RAYS);
+        assert_true(0x1p-25 < e.largest_off && e.largest_off <= 0x1p-23);
     }
 }
 
@@ -193,6 +195,7 @@ RT_TEST(recorded_answers_that_are_wrong_are_found_with_their_faults) {
         assert_int_equal(e.faults[RT_FAULT_DISPLACED], 1);
         assert_int_equal(e.faults[RT_FAULT_BESIDE], 1);
         assert_int_equal(e.sides[RT_SIDE_EXPECTED], 3);
+        assert_int_equal(e.missed, 1);
         assert_int_equal(e.first_wrong.index, miss < 77 ? miss : 77);
         assert_true(stage->reference.differs[77] && stage->reference.differs[1234]);
     }

@@ -471,7 +471,7 @@ static RtStatus add_primitive(Gltf *g, const Item *mesh, json_t *object, const P
     r->vertex_count = r->normal_count = r->uv_count = 0;
     for (uint32_t i = 0; i < positions.count; i++) RT_TRY(rt_mesh_add_vertex(r, positions.vectors[i]));
     for (uint32_t i = 0; i < normals.count; i++) RT_TRY(rt_mesh_add_normal(r, rt_narrow(normals.vectors[i])));
-    for (uint32_t i = 0; i < uvs.count; i++) /* v grows downward */
+    for (size_t i = 0; i < uvs.count; i++) /* v grows downward */
         RT_TRY(rt_mesh_add_uv(r, (RtUv){(float)uvs.at[2 * i], (float)(1 - uvs.at[2 * i + 1])}));
     return add_triangles(g, mode, indices.at ? indices.count : positions.count, indices.at);
 }

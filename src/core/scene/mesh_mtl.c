@@ -42,6 +42,7 @@ static RtStatus read_image(Library *library, const char *text) {
     char name[RT_MAX_PATH], path[RT_MAX_PATH];
     RtError why;
     const char *blank = *text == '-' ? strrchr(text, ' ') : NULL;
+    if (blank) RT_TRY(rt_mesh_warn(library->mesh, "options of map_Kd are ignored: %.60s", text));
     snprintf(name, sizeof name, "%s", blank ? blank + 1 : text);
     for (char *at = name; *at; at++) {
         if (*at == '\\') *at = '/';

@@ -86,8 +86,10 @@ typedef struct RtPolygon {
 
 /* Below, `vertices` are the polygon's own: the geometry's array from `first` on. */
 
-/* How many edges a half-line from the point along u crosses in the projection plane; 1 for a point on an
- * edge. */
+#define RT_ON_EDGE UINT32_MAX /* odd */
+
+/* How many edges a half-line from the point along u crosses in the projection plane; RT_ON_EDGE for a point
+ * on one. */
 static inline uint32_t rt_polygon_crossings(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d point) {
     double pu = point.at[polygon->u], pv = point.at[polygon->v];
     const float *last = vertices[polygon->count - 1].at;
@@ -98,7 +100,7 @@ static inline uint32_t rt_polygon_crossings(const RtPolygon *polygon, const RtVe
         double bu = (double)vertex[polygon->u], bv = (double)vertex[polygon->v];
         if ((av >= pv || bv >= pv) && (av <= pv || bv <= pv)) {
             double side = (bu - au) * (pv - av) - (pu - au) * (bv - av);
-            if (side == 0 && (au >= pu || bu >= pu) && (au <= pu || bu <= pu)) return 1;
+            if (side == 0 && (au >= pu || bu >= pu) && (au <= pu || bu <= pu)) return RT_ON_EDGE;
             bool crosses = (av > pv) != (bv > pv);
             crossings += crosses && (bv > av ? side > 0 : side < 0);
         }

@@ -70,10 +70,10 @@ function sentence(data, ray, path, step) {
 }
 
 function showRow(data, ray, row, i, step) {
-  const [enter, leave] = row.box && span(ray, row.box) || [NaN, NaN];
+  const ends = row.box ? (span(ray, row.box) ?? [NaN, NaN]).map(number) : ['', ''];
   return element('tr', { 'aria-current': i + 1 === step ? 'step' : null },
     element('td', { class: 'number' }, String(i + 1)), element('td', {}, row.form.name), element('td', {}, subject(data, row)),
-    element('td', { class: 'number' }, number(enter)), element('td', { class: 'number' }, number(leave)), element('td', {}, result(row)));
+    element('td', { class: 'number' }, ends[0]), element('td', { class: 'number' }, ends[1]), element('td', {}, result(row)));
 }
 
 const heads = ['', 'event', 'of', 'enters at t', 'leaves at t', 'result'];
