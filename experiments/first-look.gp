@@ -28,7 +28,7 @@ at(s) = here(s) ? row_of(strcol("accel")) : NaN
 least_of(a, b) = a < b ? a : b
 most_of(a, b) = a > b ? a : b
 
-left = 130.0; gap = 14.0; line = 19.0; head = 44.0; foot = 30.0; top = 34.0
+left = 130.0; gap = 14.0; line = 19.0; head = 56.0; foot = 14.0; top = 34.0
 panel_height = line * rows
 panel_width = (960 - left) / n_scenes
 
@@ -36,6 +36,9 @@ panel_width = (960 - left) / n_scenes
 names = "do for [a = 1:n_accels] { set label 100 + a word(accels, a) at graph -0.02, first row[a] right textcolor rgb ink }; \
 do for [i = 1:words(headings) / 2] { set label 200 + i word(groups, int(word(headings, 2 * i - 1))) at screen 6.0 / 960, first int(word(headings, 2 * i)) \
 left textcolor rgb soft }"
+
+# Puts the figures of the axis above a panel, below the name of its scene.
+figures_above = "set xtics offset 0, screen (panel_height + 17) / height"
 
 # ---- a whole frame: time, and tests ----
 
@@ -58,19 +61,20 @@ speed(s) = figure(column("ms"))." (".figure(column("times_faster")).")"
 legend = "set label 11 'the fastest of the four structures' at screen 0.12, screen 1 - 10.0 / height left textcolor rgb '#b34e00'; \
 set label 12 'other classic ones' at screen 0.42, screen 1 - 10.0 / height left textcolor rgb '#2f8fc4'; \
 set label 13 'the rest' at screen 0.60, screen 1 - 10.0 / height left textcolor rgb soft"
-tests_legend = "set label 11 '■ object tests' at screen 0.56, screen 1 - (top + block - 2.0) / height left textcolor rgb '#0072b2'; \
-set label 12 '■ extent tests' at screen 0.71, screen 1 - (top + block - 2.0) / height left textcolor rgb '#9a6a00'"
-array title[2] = ["Time to trace a frame on one thread, ms (in brackets: times as fast as ".without.")", "Tests of a frame, millions: object + extent tests"]
+tests_legend = "set label 11 '■ object tests' at screen 0.62, screen 1 - (top + block - 2.0) / height left textcolor rgb '#0072b2'; \
+set label 12 '■ extent tests' at screen 0.77, screen 1 - (top + block - 2.0) / height left textcolor rgb '#9a6a00'"
+array title[2] = ["Time to trace a frame on one thread, ms, logarithmic (in brackets: times as fast as ".without.")", \
+  "Tests of a frame, millions, logarithmic: object + extent tests"]
 block = head + panel_height + foot
 height = top + 2 * block
 eval canvas("frame", 960, height)
 set multiplot
 set logscale x
-set format x "10^{%T}"
+set format x "%g"
 unset ytics
 set grid xtics noytics
 set border 1
-set xtics scale 0.4 offset 0, 0.4
+set xtics scale 0
 do for [m = 1:2] {
   set autoscale # stats looks at what is in range
   if (m == 1) {
@@ -87,6 +91,7 @@ do for [m = 1:2] {
   set xrange [least : last]
   set yrange [rows + 0.7 : 0.3]
   set xtics 1, 100, 10 ** ceil(log10(most))
+  eval figures_above
   do for [s = 1:n_scenes] {
     unset label
     set lmargin at screen (left + (s - 1) * panel_width) / 960
@@ -98,7 +103,7 @@ do for [m = 1:2] {
       eval names
       eval (m == 1 ? legend : tests_legend)
     }
-    set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 0.7 font ",14" textcolor rgb ink
+    set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 1.6 font ",14" textcolor rgb ink
     if (m == 1) {
       plot "frame.csv" using (least):(at(s)):(least):(column("ms")):(at(s) - 0.36):(at(s) + 0.36):(paint(is_best(s))) \
              with boxxyerror linecolor rgb variable, \
@@ -126,6 +131,8 @@ height = top + head + panel_height + foot
 eval canvas("by-kind", 960, height)
 set multiplot
 set xtics 1, 10, 1e9
+set format x "10^{%T}"
+eval figures_above
 do for [s = 1:n_scenes] {
   unset label
   set lmargin at screen (left + (s - 1) * panel_width) / 960
@@ -138,7 +145,7 @@ do for [s = 1:n_scenes] {
     set label 1 "times as fast as ".without.", by kind of rays" at screen 6.0 / 960, screen 1 - 24.0 / height left font ",15" textcolor rgb ink
     set key at screen 0.995, screen 1 - 6.0 / height right top horizontal maxrows 1 samplen 0.5 width 0 textcolor rgb ink
   } else { unset key }
-  set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 0.7 font ",14" textcolor rgb ink
+  set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 1.6 font ",14" textcolor rgb ink
   plot for [p = 1:n_parts] "frame.csv" using (figure_of(s, part[p])):(row_of(strcol("accel"))) with points \
          pointtype mark(p) pointsize 0.9 linecolor rgb hue(p) title part_title[p]
 }

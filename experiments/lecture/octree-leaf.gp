@@ -20,7 +20,7 @@ do for [p = 1:3] {
   set logscale y 10
   set format y "%h"
   set yrange [STATS_min / 1.3 : STATS_max * 1.3]
-  if (p == 1) { set logscale x 2; set xrange [0.8 : 40]; set xtics (1, 2, 4, 8, 16, 32) } \
+  if (p == 1) { set logscale x 2; set xrange [0.8 : 40]; set xtics (1, 4, 16) } \
   else { unset logscale x; set xrange [3.7 : 10.3]; set xtics 4, 2, 10 }
   eval canvas(sprintf("%d-%s", p, word(files, p)), 960, 380)
   set multiplot layout 1, words(scenes) margins screen 0.095, 0.985, 0.16, 0.8 spacing screen 0.02, 0.1

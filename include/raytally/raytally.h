@@ -282,10 +282,11 @@ typedef struct raytally_record_options {
 #define RAYTALLY_RECORD_DEFAULTS                                                                             \
     { sizeof(raytally_record_options), 5, 0, 1, 100000 }
 
-/** Records the rays of one kind from a frame of the accelerator's scene, in the order of tracing; or random
- * rays, chords of the scene's bounding sphere, as many as the limit. The accelerator must be exact. If the
- * scene produces no rays of the kind, the array is empty. `how` may be NULL: RAYTALLY_RECORD_DEFAULTS. The
- * rays are the same on every machine, and those of `raytally bench`. */
+/** Records the rays of one kind from a frame of the accelerator's scene, in the order of tracing: tile by
+ * tile, not row by row (raytally_ray.source tells their samples); or random rays, chords of the scene's
+ * bounding sphere, as many as the limit. The accelerator must be exact. If the scene produces no rays of the
+ * kind, the array is empty. `how` may be NULL: RAYTALLY_RECORD_DEFAULTS. The rays are the same on every
+ * machine, and those of `raytally bench`. */
 RAYTALLY_API raytally_status raytally_rays_record(const raytally_accelerator *accelerator,
                                                   enum raytally_ray_kind kind,
                                                   const raytally_record_options *how, raytally_rays **out,
@@ -357,13 +358,14 @@ RAYTALLY_API raytally_status raytally_verify(const raytally_scene *scene, const 
  * @{ */
 
 /** Counts what `rays` cost, the same at any number of threads and on every machine. RAYTALLY_MISMATCH if the
- * counted and the timed kernel of an exact accelerator disagree. */
+ * counted and the timed kernel of an exact accelerator disagree. Since version 1.1 RAYTALLY_NOT_AVAILABLE for
+ * accelerators without such counts: `embree`, plugins with ::RAYTALLY_NO_COUNTS. */
 RAYTALLY_API raytally_status raytally_count(raytally_accelerator *accelerator, const raytally_rays *rays,
                                             int threads, raytally_counters *out, raytally_error *error);
 
 /** Counts what each of `rays` costs, traced by itself: counts[i * counters + c] gets ::raytally_counter `c`
  * of ray `i`, for c < counters; 0 for a counter that this library does not know. Their sums are those of
- * raytally_count. Since version 1.1. */
+ * raytally_count, as are its errors. Since version 1.1. */
 RAYTALLY_API raytally_status raytally_count_each(const raytally_accelerator *accelerator,
                                                  const raytally_rays *rays, int threads, uint64_t *counts,
                                                  uint32_t counters, raytally_error *error);
@@ -411,8 +413,9 @@ typedef struct raytally_time {
 } raytally_time;
 
 /** Times accelerators[0..count) on the same rays, at least one, in interleaved rounds: each round runs all
- * accelerators once, in a new random order. Writes times[0..count); ratios refer to accelerators[0]. `how`
- * may be NULL: RAYTALLY_TIME_DEFAULTS. */
+ * accelerators once, in a new random order. Writes times[0..count); ratios refer to accelerators[0].
+ * RAYTALLY_BAD_INPUT if their scenes differ (since version 1.1). `how` may be NULL: RAYTALLY_TIME_DEFAULTS.
+ */
 RAYTALLY_API raytally_status raytally_time_all(raytally_accelerator *const *accelerators, size_t count,
                                                const raytally_rays *rays, const raytally_time_options *how,
                                                raytally_time *times, raytally_error *error);

@@ -36,7 +36,8 @@ typedef struct raytally_ray {
     float dir[3];    /**< Direction, of any length. */
     float tmax;      /**< The largest t that counts; INFINITY for a ray without end. */
     uint32_t kind;   /**< One of ::raytally_ray_kind. */
-    uint32_t source; /**< Primary: index of its sample in the frame; shadow: index of its light; else 0. */
+    uint32_t source; /**< Shadow: index of its light. Primary, diffuse and occlusion: index of the sample
+                          in the frame, row * columns + column. Else 0. */
 } raytally_ray;
 
 /** The object of a miss. */

@@ -42,9 +42,18 @@ static RtStatus count_taught(RtAccel *accel, const RtRaySet *set, const RtHit *h
                    accel->ops->name, count.differ, count.first);
 }
 
-static RtStatus count_rays(RtAccel *accel, const RtRaySet *set, int threads, raytally_counters *out,
-                           RtError *error) {
+static RtStatus check_counts(const raytally_accelerator *accelerator, RtError *error) {
+    if (accelerator->accel->counts) return RT_OK;
+    return rt_fail(error, RT_NOT_AVAILABLE,
+                   "%s does not count, or differently on each machine: compare its hits and times",
+                   accelerator->spec);
+}
+
+static RtStatus count_rays(const raytally_accelerator *accelerator, const RtRaySet *set, int threads,
+                           raytally_counters *out, RtError *error) {
+    RtAccel *accel = accelerator->accel;
     RT_ARENA(arena);
+    RT_TRY(check_counts(accelerator, error));
     RtHit *hits = rt_arena_alloc(&arena, (size_t)set->count, sizeof *hits);
     RT_TRY(rt_arena_check(&arena, "answers", error));
     RT_TRY(rt_threads_check(threads, error));
@@ -58,7 +67,7 @@ raytally_status raytally_count(raytally_accelerator *accelerator, const raytally
                                raytally_counters *out, raytally_error *error) {
     *out = (raytally_counters){{0}};
     RT_C_LOCALE;
-    return (raytally_status)count_rays(accelerator->accel, &rays->set, threads, out, rt_error_of(error));
+    return (raytally_status)count_rays(accelerator, &rays->set, threads, out, rt_error_of(error));
 }
 
 /* An accelerator that learns does so in a copy: this one may be in use by other threads. */
@@ -68,6 +77,7 @@ static RtStatus count_each(const raytally_accelerator *accelerator, const RtRayS
     RT_OWNED(RtRows, rows, rt_rows_clear);
     RT_OWNED(RtAccel *, copy, rt_accel_destroy_at);
     const RtAccel *accel = accelerator->accel;
+    RT_TRY(check_counts(accelerator, error));
     RT_TRY(rt_threads_check(threads, error));
     if (learns(accel)) {
         RtHit *hits = rt_arena_alloc(&arena, (size_t)set->count, sizeof *hits);
@@ -125,14 +135,19 @@ raytally_status raytally_estimate_ratio(const double *over, const double *under,
 
 /* ---- timing ---- */
 
-static RtStatus check_timing(const raytally_time_options *how, size_t count, const RtRaySet *set,
-                             RtError *error) {
+static RtStatus check_timing(const raytally_time_options *how, raytally_accelerator *const *accelerators,
+                             size_t count, const RtRaySet *set, RtError *error) {
     RT_TRY(check_rounds(how->rounds, "rounds", error));
     RT_TRY(rt_threads_check(how->threads, error));
     if (!(how->least >= 0 && how->least <= 60))
         return rt_fail(error, RT_BAD_INPUT, "a round of at least %g s: expected 0..60", how->least);
     if (count == 0) return rt_fail(error, RT_BAD_INPUT, "no accelerator to time");
     if (set->count == 0) return rt_fail(error, RT_BAD_INPUT, "no rays to time accelerators on");
+    for (size_t i = 1; i < count; i++) {
+        const RtScene *first = &accelerators[0]->scene->scene, *own = &accelerators[i]->scene->scene;
+        if (own == first || rt_scene_fingerprint(own) == rt_scene_fingerprint(first)) continue;
+        return rt_fail(error, RT_BAD_INPUT, "accelerators 0 and %zu are built over different scenes", i);
+    }
     return RT_OK;
 }
 
@@ -180,7 +195,7 @@ raytally_status raytally_time_all(raytally_accelerator *const *accelerators, siz
     raytally_time_options own = RAYTALLY_TIME_DEFAULTS;
     RT_C_LOCALE;
     RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_time_options", rt_error_of(error));
-    if (status == RT_OK) status = check_timing(&own, count, &rays->set, rt_error_of(error));
+    if (status == RT_OK) status = check_timing(&own, accelerators, count, &rays->set, rt_error_of(error));
     if (status == RT_OK) status = time_all(accelerators, count, &rays->set, &own, times, rt_error_of(error));
     return (raytally_status)status;
 }

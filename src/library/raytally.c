@@ -5,6 +5,7 @@
 #include "accel/plugin.h"
 #include "core/base/memory.h"
 #include "library/library.h"
+#include "measure/measure.h"
 #include "render/frame.h"
 #include "scenes/open.h"
 
@@ -441,11 +442,8 @@ static RtStatus copy(enum raytally_ray_kind kind, const raytally_ray *rays, size
     for (size_t i = 0; i < count; i++) {
         out->rays[i].kind = (uint32_t)kind;
         if (rt_ray_is_valid(&out->rays[i])) continue;
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "ray %zu (the first is 0) is not valid: org and dir are finite, dir is not 0, and 0 <= tmin "
-            "<= tmax",
-            i);
+        return rt_fail(error, RT_BAD_INPUT, "ray %zu (the first is 0) is not valid: %s", i,
+                       rt_ray_fault(&out->rays[i]));
     }
     rt_rayset_seal(out);
     return RT_OK;

@@ -62,7 +62,7 @@ RtStatus rt_structure_available(const RtSpec *spec, const char *name, RtError *e
  * are on one level, they show size on a logarithmic scale.
  *
  * With `slice` it draws a section along the axis instead, of the region that the camera aims at: boxes cut by
- * the plane are outlined, leaves also filled; objects are grey.
+ * the plane are outlined, leaves that list objects also filled; objects are grey.
  *
  * RT_BAD_INPUT if no box is left to draw. */
 RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame *frame,

@@ -40,10 +40,15 @@ static bool is_empty_leaf(const Drawing *d, const RtBoxView *view) {
     return d->layer->ops->shows_lists && view->leaf && view->objects == 0;
 }
 
+/* Empty leaves would hide what is behind them; in a section they hide nothing. */
+static bool is_left_out(const Drawing *d, const RtBoxView *view) {
+    return is_empty_leaf(d, view) && (!d->options->slice || d->options->leaves);
+}
+
 static bool is_shown(const Drawing *d, const RtBoxView *view) {
     const RtStructureOptions *o = d->options;
     if (rt_box_is_empty(*view->box) || view->depth < o->first_level || view->depth > o->last_level ||
-        (o->leaves && !view->leaf) || is_empty_leaf(d, view))
+        (o->leaves && !view->leaf) || is_left_out(d, view))
         return false;
     return !o->slice || rt_section_add_extent(&d->section, NULL, view);
 }
@@ -54,7 +59,7 @@ static double size_of(const RtBox *box) {
 
 static void count_box(void *context, const RtBoxView *view) {
     Drawing *d = context;
-    d->all += !is_empty_leaf(d, view);
+    d->all += !is_left_out(d, view);
     if (!is_shown(d, view)) return;
     if (d->drawn++ == 0) d->first = d->last = view->depth;
     if (view->depth < d->first) d->first = view->depth;
@@ -187,7 +192,7 @@ static void fill_box(void *context, const RtBoxView *view) {
     const Drawing *d = context;
     if (!is_shown(d, view)) return;
     rt_section_add_extent(&d->section, d->cairo, view);
-    if (view->leaf) {
+    if (view->leaf && !is_empty_leaf(d, view)) {
         set_line(d, place_of_box(d, view), 0.12);
         cairo_fill_preserve(d->cairo);
     }

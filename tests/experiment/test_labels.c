@@ -67,16 +67,6 @@ PLACE_TEST(files_have_whole_labels_and_csv_and_json_call_them_alike) {
     assert_in_file(place, "output", "\"accel\": \"grid\"", "\"spec\": \"grid:rule=");
 }
 
-PLACE_TEST(files_of_hits_have_the_names_of_their_cells) {
-    assert_int_equal(raytally(place, "bench 'balls:size=1|2' -a 'grid:density=4|8' --rays random --limit 50 "
-                                     "--count-only --hits hits.npy"),
-                     0);
-    assert_in_file(place, "output", "wrote hits-*.npy");
-    assert_true(rt_file_exists(path_in(place, "hits-balls-size-1-grid-density-8.npy").text));
-    assert_true(rt_file_exists(path_in(place, "hits-balls-size-2-grid-density-4.npy").text));
-    assert_false(rt_file_exists(path_in(place, "hits.npy").text));
-}
-
 static const char two_files[] =
     "name: small\nquestion: q\nprediction: p\n"
     "scenes: [{scene: \"" SCENE "0.0125|0.025\", size: 4x4},\n"

@@ -22,12 +22,12 @@ typedef struct Input {
 /* Each target is declared here, and listed in fuzz.c. */
 typedef void Reader(const Input *input);
 typedef void Preparation(void); /* once, before the first input; what it allocates stays */
-Reader fuzz_scene, fuzz_trace, fuzz_rays, fuzz_replay;
+Reader fuzz_scene, fuzz_mtl, fuzz_trace, fuzz_rays, fuzz_hits, fuzz_replay;
 Reader fuzz_experiment, fuzz_claim, fuzz_spec, fuzz_manifest, fuzz_journal, fuzz_packed_journal, fuzz_csv,
     fuzz_verification;
 Reader fuzz_plugin, fuzz_worker;
-Preparation fuzz_prepare_trace, fuzz_prepare_results, fuzz_prepare_journal, fuzz_prepare_claim,
-    fuzz_prepare_plugin;
+Preparation fuzz_prepare_mtl, fuzz_prepare_trace, fuzz_prepare_results, fuzz_prepare_journal,
+    fuzz_prepare_claim, fuzz_prepare_plugin;
 
 /* The folder of this process, for other files that a target needs: its path with `name`, valid until the next
  * call. */

@@ -99,6 +99,40 @@ void fuzz_scene(const Input *input) {
     rt_scene_clear(&scene);
 }
 
+static const char of_library[] = "mtllib library.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                                 "usemtl one\nf 1/1 2/2 3/3\nusemtl two words\nf 1/1 2/2 3/3\n";
+
+/* An image to name, from the working folder of tests/fuzz.sh, and a mesh that names the library. */
+void fuzz_prepare_mtl(void) {
+    RtError error;
+    char *png;
+    size_t size;
+    if (rt_file_read("scenes/globe.png", 1 << 24, &png, &size, &error) != RT_OK)
+        fuzz_fail("%s", error.message);
+    fuzz_write("image.png", png, size);
+    fuzz_write("mesh.obj", of_library, strlen(of_library));
+    rt_free(png);
+}
+
+void fuzz_mtl(const Input *input) {
+    (void)input;
+    RtScene scene;
+    RtError error = {RT_OK, ""};
+    CHECK(rt_scene_load(fuzz_path("mesh.obj"), open_named, NULL, &scene, &error) == RT_OK);
+    CHECK(scene.geometry.triangle_count == 2);
+    for (uint32_t i = 0; i < scene.material_count; i++) CHECK(rt_finite(scene.materials[i].color));
+    rt_scene_clear(&scene);
+}
+
+void fuzz_hits(const Input *input) {
+    enum { RAYS = 5, OBJECTS = 7 };
+    RtHit *hits;
+    RtError error = {RT_OK, ""};
+    if (!fuzz_accepted(rt_hits_load(input->path, RAYS, OBJECTS, &hits, &error), &error)) return;
+    for (int i = 0; i < RAYS; i++) CHECK(hits[i].object < OBJECTS || hits[i].object >= RT_UNNAMED_OBJECT);
+    rt_free(hits);
+}
+
 void fuzz_rays(const Input *input) {
     RtRaySet set;
     RtError error = {RT_OK, ""};

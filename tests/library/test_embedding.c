@@ -187,8 +187,11 @@ RT_TEST(rays_of_ones_own_are_checked) {
     assert_int_equal(raytally_rays_data(rays)[0].source, 3);
     assert_true(raytally_ray_is_valid(raytally_rays_data(rays)));
     raytally_rays_free(rays);
-    assert_refused(raytally_rays_copy(RAYTALLY_SHADOW, own, 2, &rays, error), "ray 1");
+    assert_refused(raytally_rays_copy(RAYTALLY_SHADOW, own, 2, &rays, error),
+                   "ray 1 (the first is 0) is not valid: its direction is zero");
     assert_null(rays);
+    own[0].org[1] = 6e17f;
+    assert_refused(raytally_rays_copy(RAYTALLY_SHADOW, own, 2, &rays, error), "beyond 5e17");
     assert_refused(raytally_rays_copy(RAYTALLY_RAY_KINDS, own, 1, &rays, error), "");
     assert_fine(raytally_rays_copy(RAYTALLY_PRIMARY, NULL, 0, &rays, error));
     assert_int_equal(raytally_rays_count(rays), 0);
@@ -278,6 +281,34 @@ RT_TEST(a_kernel_that_answers_otherwise_when_it_counts_is_a_mismatch) {
     assert_fails(raytally_count(balls.accels[0], balls.rays, 1, &counters, error), RAYTALLY_MISMATCH,
                  "differ from the timed one");
     accel->kernels = honest;
+}
+
+RT_TEST(counts_that_are_none_are_not_reported) {
+    raytally_counters counters;
+    uint64_t counts[1];
+    balls.accels[1]->accel->counts = false;
+    assert_fails(raytally_count(balls.accels[1], balls.rays, 1, &counters, error), RAYTALLY_NOT_AVAILABLE,
+                 "grid:rule=");
+    assert_fails(raytally_count_each(balls.accels[1], balls.rays, 1, counts, 0, error),
+                 RAYTALLY_NOT_AVAILABLE, "does not count");
+    balls.accels[1]->accel->counts = true;
+}
+
+RT_TEST(accelerators_of_one_scene_are_timed_however_often_it_was_opened) {
+    raytally_time_options how = RAYTALLY_TIME_DEFAULTS;
+    raytally_time times[2];
+    how.least = 0;
+    how.rounds = 1;
+    for (int other = 0; other < 2; other++) {
+        OWNED_WORK on = {0};
+        assert_fine(raytally_scene_open(other ? "balls:size=2" : "balls:size=1", &on.scene, error));
+        assert_fine(raytally_accelerator_build(on.scene, "grid", 1, &on.accel, error));
+        raytally_accelerator *const both[2] = {balls.accels[0], on.accel};
+        if (other)
+            assert_refused(raytally_time_all(both, 2, balls.rays, &how, times, error), "0 and 1");
+        else
+            assert_fine(raytally_time_all(both, 2, balls.rays, &how, times, error));
+    }
 }
 
 RT_TEST(times_are_positive_and_the_first_is_the_measure_of_all) {

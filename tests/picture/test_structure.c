@@ -188,6 +188,27 @@ RT_TEST(a_section_shows_the_boxes_and_outlines_of_what_the_plane_cuts) {
     assert_bad_input(draw(&scene, "extents", options, &image, error), "");
 }
 
+/* Of the pixels between the balls of five_balls, in voxels without objects: those that are not white. */
+static int count_between_balls(const RtImage *image) {
+    int count = 0;
+    for (int y = 65; y < 135; y++) {
+        for (int x = 142; x < 190; x++) count += pixel(image, x, y)[0] != 255;
+    }
+    return count;
+}
+
+RT_TEST(a_section_outlines_empty_voxels_but_fills_only_those_with_objects) {
+    OWNED_IMAGE all = {0};
+    OWNED_IMAGE leaves = {0};
+    OWNED_SCENE scene = five_balls();
+    RtStructureOptions options = {.last_level = UINT32_MAX, .slice = true, .axis = 2, .at = 0.5};
+    assert_ok(draw(&scene, "grid:density=64", options, &all, error));
+    assert_in_range(count_between_balls(&all), 100, 48 * 70 / 2); /* lines, and white between them */
+    options.leaves = true;
+    assert_ok(draw(&scene, "grid:density=64", options, &leaves, error));
+    assert_int_equal(count_between_balls(&leaves), 0);
+}
+
 RT_TEST(a_section_outlines_csg_trees) {
     OWNED_IMAGE image = {0};
     uint32_t drawn = 0;

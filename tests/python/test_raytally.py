@@ -99,6 +99,34 @@ class Program(Case):
         self.assertEqual(item.counts(rays)["passed_on"].sum(), 0)
         self.assertGreater(item.counts(raytally.Rays(rays, "primary"))["passed_on"].sum(), 4000)
 
+    def test_the_source_of_a_primary_ray_is_its_sample(self):
+        rays = self.accel.record("primary")
+        self.assertEqual(sorted(rays.source), list(range(64 * 64)))
+        self.assertNotEqual(list(rays.source), sorted(rays.source))
+        directions = numpy.empty((64 * 64, 3))
+        directions[rays.source] = numpy.asarray(rays)[:, 4:7]
+        across = directions.reshape(64, 64, 3)
+        for steps in (numpy.diff(across, axis=0), numpy.diff(across, axis=1)):  # the same everywhere in the image
+            self.assertTrue((abs(steps - steps[0, 0]) < 1e-5).all())
+        self.assertEqual(set(self.accel.record("diffuse").source), set(rays.source[self.accel.occluded(rays)]))
+        self.assertEqual(set(self.accel.record("shadow").source), {0, 1, 2})  # lights
+        self.assertEqual(set(self.accel.record("reflection").source), {0})
+
+    def test_chosen_rays_keep_their_kind_and_source(self):
+        item = self.scene.accelerator("item+bvh")
+        rays, array = item.record("primary"), numpy.asarray(item.record("primary"))
+        for index in (slice(3, 900, 7), rays.source % 5 == 0, [9, 9, 2], numpy.array([-1]), []):
+            index = numpy.array(index, int) if isinstance(index, list) else index
+            chosen = rays[index]
+            self.assertEqual(chosen.kind, "primary")
+            self.assert_same(numpy.asarray(chosen), array[index])
+            self.assert_same(chosen.source, rays.source[index])
+            with self.assertRaises(ValueError):
+                chosen.source[...] = 7
+            self.assertEqual(item.counts(chosen)["passed_on"].sum(), 0)
+        self.assertEqual((len(rays[5]), rays[5].source[0]), (1, rays.source[5]))
+        self.assertEqual(len(list(rays[:3])), 3)
+
     def test_rays_are_verified(self):
         result = self.scene.verify("kd", 300)
         self.assertEqual((result["rays"], result["equal"], result["wrong"]), (300, 300, 0))
@@ -113,6 +141,8 @@ class Program(Case):
             self.assertTrue(0 < each["least"] <= each["low"] <= each["median"] <= each["high"] < 1)
             self.assertGreaterEqual(each["coverage"], 0.95)
         self.assertTrue(0 < self.accel.build_seconds < 60)
+        self.assert_refused("0 and 1 are built over different scenes", raytally.time_all,
+                            [self.accel, two_objects().accelerator("bvh")], rays_from([0, 0, 5]))
 
     def test_counts_of_ideal_are_one_test_for_each_ray_that_hits(self):
         ideal = self.scene.accelerator("ideal")
@@ -166,15 +196,18 @@ class Arrays(Case):
     def test_other_shapes_and_types_are_refused_with_a_remedy(self):
         accel, rays = two_objects().accelerator("bvh"), rays_from([0, 0, 5], [0, 0, 5])
         for use in (accel.nearest, accel.occluded, accel.counts, raytally.Rays):
-            self.assert_refused(r"shape \(16,\): expected \(N, 8\)", use, rays.ravel())
+            self.assert_refused(r"shape \(16,\): expected an array \(N, 8\)", use, rays.ravel())
             self.assert_refused(r"shape \(2, 7\)", use, rays[:, 1:])
             self.assert_refused(r"float64: expected float32, as from array.astype\('float32'\)", use, rays.astype("float64"))
             self.assert_refused("complex", use, rays.astype("complex64"))
+            self.assert_refused("rays: MaskedArray", use, numpy.ma.masked_equal(rays, 5))
+            self.assert_refused("rays: numbers of type <U", use, [["1"] * 8])
         self.assertEqual(accel.nearest(rays.astype("float16"))["object"].tolist(), [0, 0])
         rays[1, 4:7] = 0
-        self.assert_refused(r"ray 1 \(the first is 0\) is not valid", accel.nearest, rays)
+        self.assert_refused(r"ray 1 \(the first is 0\) is not valid: its direction is zero", accel.nearest, rays)
         for corner in (-1, 2**32):
-            self.assert_refused(r"expected integers in 0\.\.2\^32-1", raytally.Scene.from_arrays, [[0, 0, 0]], [[0, 0, corner]])
+            self.assert_refused(f"triangles={corner}: expected an integer in 0..4294967295", raytally.Scene.from_arrays,
+                                [[0, 0, 0]], [[0, 0, corner]])
         self.assert_refused("float64: expected integers", raytally.Scene.from_arrays, [[0, 0, 0]], [[0, 0, 0.5]])
         self.assert_refused("corner 2 is vertex 3", raytally.Scene.from_arrays, [[0, 0, 0]] * 3, [[0, 1, 3]])
         self.assert_refused("sphere 0", raytally.Scene.from_arrays, spheres=[[0, 0, 0, 0]])
@@ -191,9 +224,21 @@ class Errors(Case):
         self.assert_refused("grid", scene.verify, "gird")
         self.assert_refused("'shade' is not a kind of rays: expected one of primary, ", accel.record, "shade")
         self.assert_refused("limit of 0 rays", accel.record, limit=0)
-        self.assert_refused("-1", accel.record, limit=-1)
-        self.assert_refused("-1 threads", accel.nearest, rays_from([0, 0, 5]), threads=-1)
-        self.assert_refused("-1 threads", accel.counts, rays_from([0, 0, 5]), threads=-1)
+        for limit in (-1, 1e5, "7", 2**64):
+            self.assert_refused(f"limit={limit!r}: expected an integer", accel.record, limit=limit)
+        for threads in (-1, 2**40, 2.0):
+            says = f"threads={threads}: expected an integer in 0..1024"
+            for function in (accel.nearest, accel.counts, lambda rays, threads: accel.record(threads=threads)):
+                self.assert_refused(says, function, rays_from([0, 0, 5]), threads=threads)
+            self.assert_refused(says, scene.accelerator, "bvh", threads=threads)
+            self.assert_refused(says, scene.verify, "bvh", threads=threads)
+            self.assert_refused(says, raytally.time_all, [accel], rays_from([0, 0, 5]), threads=threads)
+        self.assert_refused("width=4294967312", two_objects().set_sampling, 2**32 + 16, 16)
+        for function in (raytally.Scene, scene.accelerator, scene.verify, raytally.load_plugin):
+            self.assert_refused("no zero character", function, "bvh\0")
+        self.assert_refused("eye, at, up: .*type <U", two_objects().set_camera, [*"009"], [*"000"], [*"010"], 40)
+        self.assert_refused("eye, at, up: ", two_objects().set_camera, [0, 9], [0, 0], [0, 1], 40)
+        accel.nearest(rays_from([0, 0, 5]), threads=numpy.int8(1))
         self.assert_refused("no accelerator", raytally.time_all, [], rays_from([0, 0, 5]))
         self.assert_refused("up", lambda: two_objects().set_camera([0, 0, 9], [0, 0, 0], [0, 0, 1], 40))
         self.assert_refused("nowhere.so", raytally.load_plugin, "nowhere.so")
@@ -209,6 +254,9 @@ class Errors(Case):
             scene.verify("faulty-own-wrong", 500)
         self.assertGreater(raised.exception.result["wrong"], 0)
         self.assertEqual(raised.exception.result["rays"], 500)
+        raytally.load_plugin(os.path.join(os.environ["RT_PLUGINS"], "own_hits.so"))
+        uncounted = scene.accelerator("own-unnamed", threads=1)
+        self.assert_refused("own-unnamed does not count", uncounted.counts, rays_from([0, 0, 5]))
         crashing = scene.accelerator("faulty-crash-rare", threads=1)
         self.assert_refused("it crashed", crashing.nearest, scene.accelerator("bvh").record(), threads=1)
 
@@ -228,7 +276,8 @@ class Lifetimes(Case):
         gc.collect()
         self.assertEqual(accel.nearest(view).tolist(), [(5, 0)])
         self.assertEqual(accel.scene.object_count, 2)
-        self.assertEqual(raytally.Rays(view)[0, 2], 5)
+        self.assertEqual(numpy.asarray(raytally.Rays(view))[0, 2], 5)
+        self.assertEqual(raytally.Rays(view).source.tolist(), [0])
         with self.assertRaises(ValueError):
             view[0] = 0
 
@@ -238,7 +287,7 @@ class Lifetimes(Case):
         self.assert_refused("free them first", scene.set_sampling, 8, 8)
         del accel
         scene.set_sampling(8, 8, 2)
-        scene.set_camera([0, 0, 9], [0, 0, 0], [0, 1, 0], 40)
+        scene.set_camera([0, 0, 9], numpy.zeros(3), (0, 1, 0), 40)
         accel = scene.accelerator("bvh")
         self.assertEqual(len(accel.record()), 8 * 8 * 2 * 2)
         self.assertEqual(numpy.asarray(accel.record())[0, 2], 9)
@@ -286,6 +335,10 @@ class Library(Case):
                                 PYTHONPATH=os.path.abspath("prefix/lib/python3/dist-packages"))
         self.assertTrue(os.path.samefile(found.stdout.strip(), installed), found.stderr)
 
+    def test_without_numpy_the_import_says_what_to_do(self):
+        failed = self.run_python("import sys; sys.modules['numpy'] = None; import raytally")
+        self.assertRegex(failed.stderr, "ImportError: .*raytally needs NumPy: Debian's python3-numpy")
+
     def test_without_it_the_import_says_what_to_do(self):
         for path, says in (("/no/such.so", "no/such.so"), ("libm.so.6", "raytally_abi_version")):
             failed = self.run_python("import raytally", RAYTALLY_LIBRARY=path)
@@ -314,6 +367,15 @@ class Library(Case):
             self.assertEqual(len(raytally._options(layout, *[0] * len(layout))), size)
         for struct, dtype in (("ray", raytally._RAY), ("hit", raytally.HIT), ("estimate", raytally.ESTIMATE), ("time", raytally.TIME)):
             self.assertEqual(dtype.itemsize, int(re.search(rf"^fixed raytally_{struct} (\d+)$", record, re.MULTILINE)[1]))
+        self.assertIn(f"value RAYTALLY_WARNING_CHARS {raytally._WARNING}\n", record)
+
+    def test_everything_public_is_named(self):
+        public = {name for name, member in vars(raytally).items() if name[0] != "_"
+                  and not inspect.ismodule(member) and getattr(member, "__module__", "raytally") in ("raytally", None)}
+        self.assertLessEqual(public, set(raytally.__all__) | {"annotations"})
+        self.assertLessEqual({*raytally.__all__}, {*vars(raytally)})
+        for name in ("HIT", "COUNTS", "ESTIMATE", "TIME", "KINDS", *raytally.COUNTERS):
+            self.assertRegex(raytally.__doc__, rf"\b{name}\b")
 
     def test_everything_public_has_a_docstring(self):
         members = [member for _, owner in inspect.getmembers(raytally, inspect.isclass) if owner.__module__ == "raytally"

@@ -76,7 +76,7 @@ typedef struct RtRay {
     RtVec3 dir;
     float tmax;
     uint32_t kind;   /* RtRayKind */
-    uint32_t source; /* primary: index of the sample in the frame's grid; shadow: index of the light */
+    uint32_t source; /* shadow: index of the light; primary, diffuse, occlusion: of the sample in the frame */
 } RtRay;
 
 /* "org (0, 0, 5) dir (0, 0, -1) t in [0, inf]", with nine digits, which read back to the same bits. */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Textures: the colour of a material as a function of texture coordinates (u, v): a checker, or an image.
- * (Blinn & Newell 1976, CACM 19(10).) A value in the material; only the texels of an image, a PNG file, are
- * shared, by all materials that name the file. They are read only, and every thread may use them.
+ * (Catmull 1974; Blinn & Newell 1976, CACM 19(10).) A value in the material; only the texels of an image, a
+ * PNG file, are shared, by all materials that name the file. They are read only, and every thread may use
+ * them.
  *
  * An image covers 0 <= u, v < 1, its lower row at v = 0, and repeats outside. A point has the colour of the
  * texel that it lies in (nearest neighbour): it can be checked by hand, and samples per pixel smooth it. */
