@@ -7,11 +7,12 @@
  * queue is processed by a loop with one short body: the processor overlaps several rays, and no branch
  * depends on the path of a ray. What a ray visits next is prefetched when it is enqueued. Wald, Gribble,
  * Boulos & Kensler 2007 ("SIMD Ray Stream Tracing") process rays in lists; their lists share a node, these
- * queues only share the kind of work. A ray takes the same path either way, so the counts are equal.
+ * queues only share the kind of work.
  *
  * Rays are traced in packets while the rays of a packet share enough of their visits, else one by one in
  * streams. The sharing is estimated from the packets traced last, and packets are tried again from time to
- * time. Counted kernels trace no packets, because a count belongs to one ray. */
+ * time. Counted kernels trace no packets, because a count belongs to one ray, and no ray alone, whose stack
+ * has another order: they always have rays in flight. */
 #include "accel/wide/packet.h"
 
 /* Writes the answer of a ray. */
@@ -42,7 +43,7 @@ RT_KERNEL NodeRay at_nodes(const RayState *f) {
     return r;
 }
 
-/* hit_children; fused: see above. */
+/* hit_children; fused: see ray.h. */
 RT_KERNEL uint32_t meet_children(const RtWideNode *node, const NodeRay *r, bool fused, RtFloat8 *enter) {
     RtFloat8 near = r->tmin, far = r->limit;
 #pragma GCC unroll 3
