@@ -388,13 +388,12 @@ RT_KERNEL bool admit(const float *triangle, RayState *f, const Query *q, float *
     return raytally_admit4(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), state_ray(f, q), t);
 }
 
-/* Tests the triangles `mask` of a block in full; true if the search is over. */
-RT_KERNEL bool test_block(const RtWideTriangles *block, uint32_t mask, RayState *f, const Query *q, bool any,
-                          RtTally *tally) {
+/* Tests the triangles `mask` of a block, sheared, in full; true if the search is over. */
+RT_KERNEL bool test_block(const RtWideTriangles *block, const RtSheared4 *s, uint32_t mask, RayState *f,
+                          const Query *q, bool any, RtTally *tally) {
     float at[RT_WIDE_BLOCK];
     RtFloat4 t;
-    const RtSheared4 s = shear(block, f);
-    mask &= rt_cross4(&s, rt_all4(f->major), &t);
+    mask &= rt_cross4(s, rt_all4(f->major), &t);
     rt_store(at, t);
     for (; mask; mask &= mask - 1) {
         uint32_t lane = (uint32_t)__builtin_ctz(mask);
@@ -411,8 +410,10 @@ RT_KERNEL bool test_block(const RtWideTriangles *block, uint32_t mask, RayState 
 RT_KERNEL bool test_triangles(const RtWideTriangles *blocks, uint32_t mask, RayState *f, const Query *q,
                               bool any, RtTally *tally) {
     for (; mask; mask >>= RT_WIDE_BLOCK, blocks++) {
-        uint32_t some = mask & ((1u << RT_WIDE_BLOCK) - 1);
-        if (some && test_block(blocks, some, f, q, any, tally)) return true;
+        const uint32_t some = mask & ((1u << RT_WIDE_BLOCK) - 1);
+        if (some == 0) continue;
+        const RtSheared4 s = shear(blocks, f);
+        if (test_block(blocks, &s, some, f, q, any, tally)) return true;
     }
     return false;
 }

@@ -113,9 +113,12 @@ RT_KERNEL void trace_one(const Query *q, RayState *f, bool any, bool fused) {
         if (rt_wide_kind(ref) == RT_WIDE_NODE) ref = find_leaf(f, &tree, ref, any, ordered, ahead, fused);
         if (ref == RT_WIDE_DONE) return;
         if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) {
-            const RtWideTriangles *blocks = rt_wide_leaf_at(&tree, ref);
-            uint32_t mask = prefilter_leaf(blocks, ref, f);
-            if (mask && test_triangles(blocks, mask, f, q, any, NULL)) return;
+            const RtWideTriangles *block = rt_wide_leaf_at(&tree, ref), *last = block + rt_wide_has_more(ref);
+            for (; block <= last; block++) {
+                const RtSheared4 s = shear(block, f);
+                const uint32_t mask = rt_edge_prefilter4(&s);
+                if (mask && test_block(block, &s, mask, f, q, any, NULL)) return;
+            }
         } else if (rt_wide_kind(ref) == RT_WIDE_SPHERES) {
             if (test_spheres(q, ref, f, any, NULL)) return;
         } else if (test_objects(q, ref, state_ray(f, q), any, &f->best, NULL)) {
