@@ -346,10 +346,10 @@ RtBox4 rt_subtree_build(const RtSubtreeBuilder *b, RtRefGroup group) {
 /* ---- on all threads ---- */
 
 enum {
-    SHARES = 64,       /* a group is one task if it is at most this fraction of a thread's share ... */
-    SMALL = 1 << 11,   /* ... or has at most so many references */
-    CHUNK = 1 << 13,   /* references of a chunk of the top */
-    LARGE = 4 * CHUNK, /* fewer references in all are built on one thread */
+    SHARES = 64,     /* a group is one task if it is at most this fraction of a thread's share ... */
+    SMALL = 1 << 11, /* ... or has at most so many references */
+    CHUNK = 1 << 13, /* references of a chunk of the top */
+    LARGE = CHUNK,   /* fewer references in all are built on one thread */
 };
 
 static_assert(sizeof(RtTreeRef) <= sizeof(RtTreeNode), "references fit into the room of the nodes");
