@@ -59,6 +59,14 @@ RT_KERNEL uint32_t meet_children(const RtWideNode *node, const NodeRay *r, bool 
     return rt_le_bits(near, far);
 }
 
+/* Pops the stack until an entry is not entered beyond the best hit; the bottom is entered at -infinity. */
+RT_KERNEL RtWideRef pop(const RayState *f, uint32_t *top, float limit, bool any) {
+    do {
+        --*top;
+    } while (!any && f->enter[*top] > limit);
+    return f->stack[*top];
+}
+
 /* From `ref`, a node, to a leaf, or RT_WIDE_DONE. */
 RT_KERNEL RtWideRef find_leaf(RayState *f, const RtWideTree *tree, RtWideRef ref, bool any, bool ordered,
                               bool ahead, bool fused) {
@@ -70,8 +78,7 @@ RT_KERNEL RtWideRef find_leaf(RayState *f, const RtWideTree *tree, RtWideRef ref
         RtFloat8 near;
         uint32_t mask = meet_children(node, &r, fused, &near);
         if (mask == 0) {
-            do ref = f->stack[--top];
-            while (!any && f->enter[top] > limit);
+            ref = pop(f, &top, limit, any);
             continue;
         }
         uint32_t lane = (uint32_t)__builtin_ctz(mask);
@@ -125,8 +132,7 @@ RT_KERNEL void trace_one(const Query *q, RayState *f, bool any, bool fused) {
             return;
         }
         if (!any) f->limit = rt_minf(f->best.t, f->limit);
-        do ref = f->stack[--f->top];
-        while (!any && f->enter[f->top] > f->limit);
+        ref = pop(f, &f->top, f->limit, any);
     }
 }
 
