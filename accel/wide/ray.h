@@ -233,9 +233,22 @@ RT_KERNEL const RtPreparedRay *state_ray(RayState *f, const Query *q) {
     return &f->ray;
 }
 
-/* Prepares a ray for the root. False if it is answered already: the tree is empty, or the ray is too extreme
- * for the boxes of split references and was tested against all objects. */
-RT_KERNEL bool init_ray(RayState *f, const Query *q, size_t index, bool any, RtTally *tally) {
+/* Prepares a ray for leaves. */
+RT_KERNEL void init_leaves(RayState *f, const RtRay *ray) {
+    const int kz = rt_major_axis(ray->dir), kx = rt_next_axis(kz), ky = rt_next_axis(kx), k[3] = {kx, ky, kz};
+    for (int i = 0; i < 3; i++) {
+        f->at[i] = (uint32_t)k[i] * COORDINATE;
+        f->org[i] = ray->org.at[k[i]];
+    }
+    f->shear_x = ray->dir.at[kx] * f->inv[kz];
+    f->shear_y = ray->dir.at[ky] * f->inv[kz];
+    f->major = ray->dir.at[kz];
+    f->sure = rt_dir_is_ordinary(f->major) ? 0x1p-60f * fabsf(f->inv[kz]) : INFINITY;
+}
+
+/* Prepares a ray for the root, and if `whole` for leaves. False if it is answered already: the tree is empty,
+ * or the ray is too extreme for the boxes of split references and was tested against all objects. */
+RT_KERNEL bool init_ray(RayState *f, const Query *q, size_t index, bool any, bool whole, RtTally *tally) {
     const RtRay *ray = &q->rays[index];
     /* The loads rely on the layout of RtRay: org, tmin, dir, tmax. */
     const RtFloat4 org = rt_loadu4(ray), dir = rt_loadu4((const char *)ray + offsetof(RtRay, dir));
@@ -245,9 +258,7 @@ RT_KERNEL bool init_ray(RayState *f, const Query *q, size_t index, bool any, RtT
     f->tally = tally;
     f->prepared = false;
     if (q->tree->node_count == 0) return false;
-    const int kz = rt_major_axis(ray->dir), kx = rt_next_axis(kz), ky = rt_next_axis(kx);
-    const bool is_near = rt_dir_is_ordinary(ray->dir.at[kz]);
-    if (q->tree->split_refs && !is_near) {
+    if (q->tree->split_refs && !rt_dir_is_ordinary(ray->dir.at[rt_major_axis(ray->dir)])) {
         rt_test_all(q->geometry, state_ray(f, q), any, &f->best, tally);
         return false;
     }
@@ -259,15 +270,7 @@ RT_KERNEL bool init_ray(RayState *f, const Query *q, size_t index, bool any, RtT
     memcpy(f->far, &far, sizeof f->far);
     f->tmin = ray->tmin;
     f->limit = f->tmax = rt_minf(ray->tmax, FLT_MAX);
-    const int k[3] = {kx, ky, kz};
-    for (int i = 0; i < 3; i++) {
-        f->at[i] = (uint32_t)k[i] * COORDINATE;
-        f->org[i] = ray->org.at[k[i]];
-    }
-    f->shear_x = ray->dir.at[kx] * f->inv[kz];
-    f->shear_y = ray->dir.at[ky] * f->inv[kz];
-    f->major = ray->dir.at[kz];
-    f->sure = is_near ? 0x1p-60f * fabsf(f->inv[kz]) : INFINITY;
+    if (whole) init_leaves(f, ray);
     f->enter[0] = -INFINITY;
     f->stack[0] = RT_WIDE_DONE;
     f->top = 1;

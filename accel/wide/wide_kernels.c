@@ -116,9 +116,10 @@ RT_KERNEL void trace_one(const Query *q, RayState *f, bool any, bool fused) {
     const RtWideTree tree = *q->tree;
     const bool ordered = !any && q->self->order, ahead = q->self->prefetch;
     RtWideRef ref = 0;
-    for (;;) {
+    for (bool ready = false;; ready = true) {
         if (rt_wide_kind(ref) == RT_WIDE_NODE) ref = find_leaf(f, &tree, ref, any, ordered, ahead, fused);
         if (ref == RT_WIDE_DONE) return;
+        if (!ready) init_leaves(f, &q->rays[f->index]); /* many rays reach none */
         if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) {
             const RtWideTriangles *block = rt_wide_leaf_at(&tree, ref), *last = block + rt_wide_has_more(ref);
             for (; block <= last; block++) {
@@ -151,7 +152,7 @@ RT_KERNEL bool fuse(const Query *q, RayState *f) {
 RT_KERNEL void trace_one_by_one(const Query *q, size_t count, bool any) {
     RayState *f = q->scratch->own;
     for (size_t i = 0; i < count; i++) {
-        if (init_ray(f, q, i, any, NULL)) {
+        if (init_ray(f, q, i, any, false, NULL)) {
             if (RT_FUSES && fuse(q, f))
                 trace_one(q, f, any, true);
             else
@@ -277,7 +278,7 @@ RT_KERNEL void start_next_ray(const Query *q, RayQueues *t, RayState *f, bool an
     while (more_rays(q)) {
         size_t i = q->source->index[q->source->taken++];
         RtTally *tally = counted ? &q->tallies[q->rays[i].kind] : NULL;
-        if (init_ray(f, q, i, any, tally)) {
+        if (init_ray(f, q, i, any, true, tally)) {
             t->in_flight++;
             enqueue(t, q->tree, f, 0, 1, ahead);
             return;
