@@ -141,8 +141,7 @@ RtStatus rt_measure_learning(const RtAccel *accel, const RtRaySet *set, const Rt
 /* ---- files (ray_file.c) ---- */
 
 /* Ray sets as NumPy arrays, or with the extension .csv as text: rays and answers may come from any other
- * renderer, and go to any other program. docs/guide/own-rays.md describes the files.
- */
+ * renderer, and go to any other program. docs/guide/own-rays.md describes the files. */
 
 /* Floats per row: origin, tmin, direction, tmax. */
 #define RT_RAY_COLUMNS 8

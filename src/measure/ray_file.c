@@ -79,8 +79,7 @@ static json_t *parse(const char *text) {
 typedef struct Source Source;
 
 typedef struct Form {
-    /* Sets the layout of rows from the type and the other dimensions of an array; false if they are others.
-     */
+    /* Sets the layout of rows from the type and the other dimensions of an array; false: not of this form. */
     bool (*take)(const json_t *descr, const json_t *shape, Source *source);
     const char *array;                 /* what it takes */
     const char *names[RT_RAY_COLUMNS]; /* [count] of columns of a text, in the order of its own files */

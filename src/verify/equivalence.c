@@ -344,7 +344,7 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
         RtVerdict verdict;
         RT_TRY(rt_answer_verdict(&worker->query, &wrong, &verdict, error));
         if (verdict == RT_WRONG) keep_wrong_answer(part, &wrong);
-        if (verdict < RT_MARGINAL) add_difference(expected, wrong.got, part);
+        if (verdict < RT_MARGINAL && !job->accel->exact) add_difference(expected, wrong.got, part);
         if (verdict >= RT_MARGINAL) doubtful = &worker->answers.hits[w][i];
         if (verdict == RT_WRONG) faulty = doubtful;
         if (verdict > worst) worst = verdict;
