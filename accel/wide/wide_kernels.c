@@ -43,7 +43,8 @@ RT_KERNEL NodeRay at_nodes(const RayState *f) {
     return r;
 }
 
-/* hit_children; fused: see ray.h. */
+/* hit_children, of a NodeRay; fused: see ray.h. Streams visit one node at a time, for which filling a NodeRay
+ * does not pay: by this function they take up to twice the time where vectors have four lanes. */
 RT_KERNEL uint32_t meet_children(const RtWideNode *node, const NodeRay *r, bool fused, RtFloat8 *enter) {
     RtFloat8 near = r->tmin, far = r->limit;
 #pragma GCC unroll 3
