@@ -76,6 +76,7 @@ RT_KERNEL RtWideRef find_leaf(RayState *f, const RtWideTree *tree, RtWideRef ref
     uint32_t top = f->top;
     do {
         const RtWideNode *node = rt_wide_node(tree, ref);
+        if (ahead) __builtin_prefetch(node->child); /* comes while the planes do */
         RtFloat8 near;
         uint32_t mask = meet_children(node, &r, fused, &near);
         if (mask == 0) {
