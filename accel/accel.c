@@ -13,6 +13,8 @@ uint64_t rt_accel_byte_limit(const RtScene *scene) {
 }
 
 static void destroy_layer(RtAccel *accel) {
+    for (uint32_t i = 0; accel->parts && i < accel->scene->part_count; i++) rt_accel_destroy(accel->parts[i]);
+    rt_free(accel->parts);
     if (accel->ops->destroy) accel->ops->destroy(accel);
     rt_arena_clear(&accel->memory);
     rt_free(accel);
@@ -21,6 +23,10 @@ static void destroy_layer(RtAccel *accel) {
 RtStatus rt_accel_build_layer(const RtAccelOps *ops, const RtBuild *what, RtAccel *below, RtAccel **out,
                               RtError *error) {
     assert(ops->bytes >= sizeof(RtAccel));
+    if ((ops->flat || ops->remote) && what->scene->geometry.instance_count > 0)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s serves no scene with instances: `raytally convert` writes one of copies",
+                       ops->name);
     RtAccel *accel = rt_alloc(1, ops->bytes);
     if (!accel) return rt_fail_memory(error, ops->name, ops->bytes);
     *accel = (RtAccel){.ops = ops,
@@ -59,19 +65,34 @@ const RtAccel *rt_accel_base(const RtAccel *accel) {
     return accel;
 }
 
+static void add_sizes(const RtDescription *own, const RtTally *build, RtDescription *out) {
+    out->interior += own->interior;
+    out->leaves += own->leaves;
+    out->empty_leaves += own->empty_leaves;
+    out->references += own->references;
+    out->bytes += own->bytes;
+    rt_tally_add(&out->build, build);
+    if (own->depth > out->depth) out->depth = own->depth;
+}
+
+/* Each part once, however many instances share it. */
+static void add_parts(const RtAccel *accel, RtDescription *out) {
+    for (uint32_t i = 0; accel->parts && i < accel->scene->part_count; i++) {
+        RtDescription part;
+        rt_accel_describe(accel->parts[i], &part);
+        add_sizes(&part, &part.build, out);
+    }
+}
+
 void rt_accel_describe(const RtAccel *accel, RtDescription *out) {
     accel->ops->describe(accel, out);
     out->build = accel->build_tally;
+    add_parts(accel, out);
     while ((accel = accel->below)) {
         RtDescription own;
         accel->ops->describe(accel, &own);
-        out->interior += own.interior;
-        out->leaves += own.leaves;
-        out->empty_leaves += own.empty_leaves;
-        out->references += own.references;
-        out->bytes += own.bytes;
-        rt_tally_add(&out->build, &accel->build_tally);
-        if (own.depth > out->depth) out->depth = own.depth;
+        add_sizes(&own, &accel->build_tally, out);
+        add_parts(accel, out);
 #define COPY_PREDICTION(name, meaning) out->name = own.name;
         RT_PREDICTIONS(COPY_PREDICTION)
         RT_QUALITIES(COPY_PREDICTION)
@@ -82,6 +103,8 @@ void rt_accel_describe(const RtAccel *accel, RtDescription *out) {
 RtStatus rt_accel_validate(const RtAccel *accel, RtError *error) {
     for (; accel; accel = accel->below) {
         if (accel->ops->validate) RT_TRY(accel->ops->validate(accel, error));
+        for (uint32_t i = 0; accel->parts && i < accel->scene->part_count; i++)
+            RT_TRY(rt_accel_validate(accel->parts[i], error));
     }
     return RT_OK;
 }
@@ -129,14 +152,30 @@ static RtStatus open_layers(RtQuery *query, RtError *error) {
     return RT_OK;
 }
 
+/* Opens a query in each part of the scene; all of them share the array. */
+static RtStatus open_parts(RtQuery *query, RtError *error) {
+    const RtAccel *base = rt_accel_base(query->accel);
+    const uint32_t count = base->parts ? base->scene->part_count : 0;
+    if (count == 0) return RT_OK;
+    query->parts = rt_alloc(count, sizeof(RtQuery));
+    if (!query->parts) return rt_fail_memory(error, "queries of parts", count * sizeof(RtQuery));
+    if (query->scratch[0].hit_memory) query->scratch[0].hit_memory->parts = query->parts;
+    for (uint32_t i = 0; i < count; i++) {
+        RT_TRY(rt_query_init(&query->parts[i], base->parts[i], error));
+        RtHitMemory *own = query->parts[i].scratch[0].hit_memory;
+        if (own) own->parts = query->parts;
+    }
+    return RT_OK;
+}
+
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
     RtScratch scratch = {NULL, NULL};
     size_t bytes = 0;
     *query = (RtQuery){0};
-    RT_TRY(rt_crossings_alloc(&accel->scene->geometry, &scratch.crossings, error));
+    RT_TRY(rt_hit_memory_alloc(&accel->scene->geometry, &scratch.hit_memory, error));
     for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += scratch_stride(layer);
     if (bytes > 0 && !(scratch.own = rt_alloc(bytes, 1))) {
-        rt_free(scratch.crossings);
+        rt_free(scratch.hit_memory);
         return rt_fail_memory(error, "the scratch memory of a query", bytes);
     }
     query->accel = accel;
@@ -146,14 +185,21 @@ RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
         if (scratch.own) scratch.own = (char *)scratch.own + scratch_stride(layer);
     }
     RT_TRY(open_layers(query, error));
-    if (bytes > 0) rt_query_begin(query);
-    return RT_OK;
+    const RtStatus status = open_parts(query, error);
+    if (status != RT_OK)
+        rt_query_clear(query);
+    else if (bytes > 0)
+        rt_query_begin(query);
+    return status;
 }
 
 void rt_query_clear(RtQuery *query) {
     close_layers(query, NULL);
+    for (uint32_t i = 0; query->parts && i < query->accel->scene->part_count; i++)
+        rt_query_clear(&query->parts[i]);
+    rt_free(query->parts);
     rt_free(query->scratch[0].own);
-    rt_free(query->scratch[0].crossings);
+    rt_free(query->scratch[0].hit_memory);
     *query = (RtQuery){0};
 }
 
@@ -162,6 +208,8 @@ void rt_query_begin(RtQuery *query) {
     for (const RtAccel *layer = query->accel; layer; layer = layer->below, scratch++) {
         if (layer->ops->begin) layer->ops->begin(layer, scratch->own);
     }
+    for (uint32_t i = 0; query->parts && i < query->accel->scene->part_count; i++)
+        rt_query_begin(&query->parts[i]);
 }
 
 void rt_nearest(RtQuery *query, const RtRay *rays, size_t count, RtHit *hits, RtTally *tallies) {

@@ -38,6 +38,7 @@ typedef struct RtAccel {
     const RtAccelOps *ops;
     const RtScene *scene;     /* borrowed */
     struct RtAccel *below;    /* owned; NULL for a base */
+    struct RtAccel **parts;   /* of a base: [scene->part_count] owned; an accelerator for each part */
     const RtKernels *kernels; /* of its ops, or those that its `build` has chosen */
     size_t scratch_bytes;     /* of a query: memory that is zeroed and 64-byte aligned; as its kernels say, or
                                  its `build` */
@@ -92,7 +93,7 @@ uint64_t rt_accel_byte_limit(const RtScene *scene);
 /* The memory that the kernels of a layer may write to. */
 typedef struct RtScratch {
     void *own;             /* [scratch_bytes]; NULL if no layer needs any */
-    RtCrossing *crossings; /* buffer of hit functions (rt_hit_ray) */
+    RtHitMemory *hit_memory; /* of hit functions (rt_hit_ray) */
 } RtScratch;
 
 /* A kernel. rays[0..count) are valid (rt_ray_is_valid). scratch[0] belongs to the layer; those of the layers
@@ -185,6 +186,7 @@ struct RtAccelOps {
     size_t param_count;
     uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays. Which
                        rays a plugin's answers is unknown: RT_ALL_RAY_KINDS */
+    bool flat;      /* refuses scenes with instances */
     bool remote;    /* a plugin's, which is built in a process of its own (accel/plugin.h) */
     /* Optional: a spec, "light:cells=100", that is verified in addition to the default. For accelerators that
      * do not use their own structure over few objects or rays by default. */
@@ -286,13 +288,17 @@ typedef struct RtSpecLayer {
     RtValue values[RT_MAX_PARAMS];
 } RtSpecLayer;
 
-/* Overlays, topmost first, then the base, layers[layer_count - 1]. */
+/* Overlays, topmost first, then the base, layers[layer_count - 1]; and the accelerator of the scene's parts,
+ * or without `of_parts` one like the base. */
 typedef struct RtSpec {
     uint32_t layer_count; /* 1..RT_MAX_LAYERS */
     RtSpecLayer layers[RT_MAX_LAYERS];
+    bool of_parts;
+    RtSpecLayer part;
 } RtSpec;
 
-/* Parses `name[:key=value[,key=value]...]`, several of them joined by '+': overlays over one base. */
+/* Parses `name[:key=value[,key=value]...]`, several of them joined by '+': overlays over one base.
+ * After a '/' comes the accelerator of the scene's parts. */
 RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error);
 
 /* Whether one of its layers is a plugin's; then the whole stack is built in a process of its own. */
@@ -365,14 +371,15 @@ RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, si
 typedef struct RtQuery {
     const RtAccel *accel;
     RtScratch scratch[RT_MAX_LAYERS]; /* of each layer, topmost first; scratch[0] owns all memory */
+    struct RtQuery *parts; /* [scene->part_count] owned, a query in each part; NULL in those */
 } RtQuery;
 
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error);
 void rt_query_clear(RtQuery *query);
 
 /* The query's buffer of hit functions, for other calls of hit functions on the same thread. */
-static inline RtCrossing *rt_query_crossings(const RtQuery *query) {
-    return query->scratch[0].crossings;
+static inline RtHitMemory *rt_query_hit_memory(const RtQuery *query) {
+    return query->scratch[0].hit_memory;
 }
 
 /* Forgets the state left by earlier rays (the last occluders of a shadow cache), so that later counts depend

@@ -113,7 +113,7 @@ RT_KERNEL void rt_batch_begin(RtBatch *batch, const RtGeometry *g, const RtScrat
                               const RtRay *rays, uint32_t count, RtTally *tallies) {
     for (uint32_t i = 0; i < count; i++) {
         RtActiveRay *a = &batch->rays[i];
-        rt_hit_ray(&a->ray, g, &rays[i], scratch->crossings);
+        rt_hit_ray(&a->ray, g, &rays[i], scratch->hit_memory);
         a->best = RT_MISS;
         a->tally = tallies ? &tallies[rays[i].kind] : NULL;
         batch->active[i] = i;

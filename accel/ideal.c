@@ -2,7 +2,7 @@
 /* ideal: recorded answers, with one object test for a ray that hits and none for one that misses: the cost of
  * an accelerator that knows everything in advance, a lower bound for all others.
  *
- * Layout: the id of the nearest object for each recorded ray. A ray is recognised by its address, so the
+ * Layout: the nearest object for each recorded ray, or the instance that contains it. A ray is recognised by its address, so the
  * lookup costs nothing: rays between `rays` and `rays + count` are recorded. All other rays are tested
  * against every object, as by brute, so every answer is right. */
 #include "accel/kernel.h"
@@ -18,7 +18,10 @@ static RtStatus learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, size
     Ideal *self = (Ideal *)accel;
     uint32_t *objects = rt_arena_alloc(&accel->memory, count, sizeof(uint32_t));
     RT_TRY(rt_arena_check(&accel->memory, "the answers of ideal", error));
-    for (size_t i = 0; i < count; i++) objects[i] = hits[i].object;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t id = hits[i].object;
+        objects[i] = id == RT_NO_OBJECT ? id : rt_geometry_holder(&accel->scene->geometry, id);
+    }
     rt_arena_free(&accel->memory, self->objects);
     self->rays = rays;
     self->objects = objects;

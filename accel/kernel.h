@@ -32,10 +32,18 @@ RT_KERNEL bool rt_take_hit(RtHit hit, bool any, RtHit *best, RtTally *tally) {
     return any;
 }
 
+/* Tests an instance, whose hit is on an object of its part (accel/instance.c). Returns as rt_take_hit. */
+bool rt_enter_timed(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any, RtHit *best);
+bool rt_enter_counted(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any, RtHit *best,
+                      RtTally *tally);
+
 /* One object test, by the hit function. Returns as rt_take_hit. */
 RT_KERNEL bool rt_test_object(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any,
                               RtHit *best, RtTally *tally) {
     float t;
+    if (__builtin_expect(rt_is_instance(geometry, id), 0))
+        return tally ? rt_enter_counted(geometry, id, ray, any, best, tally)
+                     : rt_enter_timed(geometry, id, ray, any, best);
     rt_count_test(geometry, id, tally);
     return rt_object_hit(geometry, id, ray, &t, tally) && rt_take_hit((RtHit){t, id}, any, best, tally);
 }
@@ -151,7 +159,7 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
         for (size_t i = 0; i < count; i++) {                                                                 \
             RtTally *tally = counted ? &tallies[rays[i].kind] : NULL;                                        \
             RtPreparedRay prepared;                                                                          \
-            rt_hit_ray(&prepared, &accel->scene->geometry, &rays[i], scratch->crossings);                    \
+            rt_hit_ray(&prepared, &accel->scene->geometry, &rays[i], scratch->hit_memory);                    \
             RtHit best = RT_MISS;                                                                            \
             search((const Type *)accel, scratch->own, &prepared, any, &best, tally);                         \
             rt_put_answer(&best, i, any, hits, occluders, tally);                                            \

@@ -89,7 +89,7 @@ uint32_t rt_accel_color(const char *spec) {
         const char *name;
         uint32_t color;
     } colors[] = {ACCELERATORS(COLOR) EMBREE(COLOR)};
-    const size_t top = strcspn(spec, ":+");
+    const size_t top = strcspn(spec, ":+/");
     for (size_t i = 0; i < sizeof colors / sizeof colors[0]; i++) {
         if (strlen(colors[i].name) == top && strncmp(colors[i].name, spec, top) == 0) return colors[i].color;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Specs: "name:key=value,key=value", with '+' between layers. And names for the fastest of several
+/* Specs: "name:key=value,key=value", with '+' between layers and '/' before the accelerator of parts. And names for the fastest of several
  * (RtBestOf), which stand for all combinations of the choices listed there, those of the first parameter
  * varying fastest. */
 #include "accel/accel.h"
@@ -29,7 +29,7 @@ static const RtBestOf *find_best(const RtAccelOps *ops, const char *name) {
 
 static RtStatus parse_layer(const char *text, size_t chars, RtSpecLayer *layer, RtError *error) {
     char copy[RT_MAX_SPEC_CHARS], what[RT_MAX_NAME + 16];
-    size_t name_chars = strcspn(text, ":+");
+    size_t name_chars = strcspn(text, ":+/");
     if (name_chars == 0 || name_chars >= RT_MAX_NAME || chars >= sizeof copy)
         return rt_fail(
             error, RT_BAD_INPUT,
@@ -68,18 +68,31 @@ static RtStatus check_layers(const RtSpec *spec, const char *text, RtError *erro
                    last->name, text, rt_accel_default());
 }
 
+/* The accelerator of parts, after a '/'. */
+static RtStatus parse_part(const char *text, RtSpec *spec, RtError *error) {
+    spec->of_parts = true;
+    RT_TRY(parse_layer(text, strlen(text), &spec->part, error));
+    if (!spec->part.ops->kinds && !spec->part.ops->remote) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "'%.80s': %s cannot stand after a '/', where the accelerator of parts is",
+                   text, spec->part.ops->name);
+}
+
 RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error) {
-    const char *rest = text;
-    spec->layer_count = 0;
+    const char *rest = text, *end = text + strcspn(text, "/");
+    *spec = (RtSpec){0};
     for (;;) {
         size_t chars = layer_length(rest);
+        if (rest + chars > end) chars = (size_t)(end - rest);
         if (spec->layer_count == RT_MAX_LAYERS)
             return rt_fail(error, RT_BAD_INPUT, "'%.80s': more than %d accelerators stacked", text,
                            RT_MAX_LAYERS);
         RT_TRY(parse_layer(rest, chars, &spec->layers[spec->layer_count++], error));
-        if (rest[chars] == '\0') return check_layers(spec, text, error);
-        rest += chars + 1;
+        rest += chars;
+        if (rest == end) break;
+        rest++;
     }
+    RT_TRY(check_layers(spec, text, error));
+    return *end ? parse_part(end + 1, spec, error) : RT_OK;
 }
 
 bool rt_spec_is_remote(const RtSpec *spec) {
@@ -100,23 +113,43 @@ RtStatus rt_spec_available(const RtSpec *spec, RtError *error) {
         const RtSpecLayer *layer = &spec->layers[i];
         if (layer->ops->available) RT_TRY(layer->ops->available(layer->values, error));
     }
-    return RT_OK;
+    const bool asks = spec->of_parts && spec->part.ops->available;
+    return asks ? spec->part.ops->available(spec->part.values, error) : RT_OK;
+}
+
+static size_t format_layer(const RtSpecLayer *layer, const char *before, char *out, size_t used) {
+    if (used >= RT_MAX_SPEC_CHARS) return used;
+    snprintf(out + used, RT_MAX_SPEC_CHARS - used, "%s%s%s", before, layer->ops->name,
+             layer->ops->param_count ? ":" : "");
+    used = strlen(out);
+    rt_params_format(layer->ops->params, layer->ops->param_count, layer->values, out + used,
+                     RT_MAX_SPEC_CHARS - used);
+    return strlen(out);
 }
 
 void rt_spec_format(const RtSpec *spec, char *out) {
     size_t used = 0;
-    for (uint32_t i = 0; i < spec->layer_count && used < RT_MAX_SPEC_CHARS; i++) {
-        const RtSpecLayer *layer = &spec->layers[i];
-        snprintf(out + used, RT_MAX_SPEC_CHARS - used, "%s%s%s", i > 0 ? "+" : "", layer->ops->name,
-                 layer->ops->param_count ? ":" : "");
-        used = strlen(out);
-        rt_params_format(layer->ops->params, layer->ops->param_count, layer->values, out + used,
-                         RT_MAX_SPEC_CHARS - used);
-        used = strlen(out);
-    }
+    for (uint32_t i = 0; i < spec->layer_count; i++)
+        used = format_layer(&spec->layers[i], i > 0 ? "+" : "", out, used);
+    if (spec->of_parts) format_layer(&spec->part, "/", out, used);
 }
 
 /* ---- building ---- */
+
+/* Builds what answers rays in the parts of a scene, for the base of a stack. */
+static RtStatus build_parts(const RtSpec *spec, int threads, RtAccel *base, RtError *error) {
+    const RtScene *scene = base->scene;
+    const RtSpecLayer *layer = spec->of_parts ? &spec->part : &spec->layers[spec->layer_count - 1];
+    if (scene->part_count == 0) return RT_OK;
+    base->parts = rt_alloc(scene->part_count, sizeof *base->parts);
+    if (!base->parts) return rt_fail_memory(error, "parts", scene->part_count * sizeof *base->parts);
+    for (uint32_t i = 0; i < scene->part_count; i++) {
+        const RtScene *part = scene->parts[i];
+        const RtBuild what = {part, layer->values, threads, rt_accel_byte_limit(part)};
+        RT_TRY(rt_accel_build_layer(layer->ops, &what, NULL, &base->parts[i], error));
+    }
+    return RT_OK;
+}
 
 static RtStatus build_layers(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
                              RtError *error) {
@@ -127,6 +160,7 @@ static RtStatus build_layers(const RtSpec *spec, const RtScene *scene, int threa
     for (uint32_t i = spec->layer_count; i-- > 0;) {
         const RtBuild what = {scene, spec->layers[i].values, threads, rt_accel_byte_limit(scene)};
         RtStatus status = rt_accel_build_layer(spec->layers[i].ops, &what, top, &top, error);
+        if (status == RT_OK && !top->below) status = build_parts(spec, threads, top, error);
         if (status != RT_OK) {
             rt_accel_destroy(top);
             return status;

@@ -5,9 +5,9 @@
 
 #include "core/shape/geometry.h"
 
-static inline RtCrossing *crossings_of_tests(void) {
-    static RtCrossing crossings[1 << 16];
-    return crossings;
+static inline RtHitMemory *hit_memory_of_tests(void) {
+    static _Alignas(RtHitMemory) char memory[sizeof(RtHitMemory) + (sizeof(RtCrossing) << 16)];
+    return (RtHitMemory *)memory;
 }
 
 static inline RtRay ray_along(RtVec3 org, RtVec3 dir) {
@@ -16,7 +16,7 @@ static inline RtRay ray_along(RtVec3 org, RtVec3 dir) {
 
 static inline bool hit(const RtGeometry *g, uint32_t id, const RtRay *ray, float *t) {
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, g, ray, crossings_of_tests());
+    rt_hit_ray(&prepared, g, ray, hit_memory_of_tests());
     return rt_object_hit(g, id, &prepared, t, NULL);
 }
 

@@ -26,7 +26,7 @@ typedef struct Hits {
 
 static inline RtPreparedRay prepare(const RtRay *ray, const RtCsg *tree) {
     RtPreparedRay prepared = rt_ray_prepare(ray, &tree->box);
-    prepared.crossings = crossings_of_tests();
+    prepared.crossings = hit_memory_of_tests();
     return prepared;
 }
 

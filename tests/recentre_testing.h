@@ -32,7 +32,7 @@ static inline uint32_t first_hit(const RtScene *scene, const RtRay *ray, float *
     RtPreparedRay prepared;
     uint32_t first = RT_NO_OBJECT;
     for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
-        rt_hit_ray(&prepared, &scene->geometry, &rest, crossings_of_tests());
+        rt_hit_ray(&prepared, &scene->geometry, &rest, hit_memory_of_tests());
         if (!rt_object_hit(&scene->geometry, id, &prepared, t, NULL)) continue;
         if (first != RT_NO_OBJECT && *t == rest.tmax) continue; /* the lower id wins a tie */
         rest.tmax = *t;

@@ -153,7 +153,7 @@ typedef struct Trace {
     RTCIntersectFunctionN intersect;
     RTCOccludedFunctionN occluded;
     Search *searches;      /* by ray id */
-    RtCrossing *crossings; /* of hit functions */
+    RtHitMemory *hit_memory; /* of hit functions */
 } Trace;
 
 typedef struct Batch {
@@ -303,7 +303,7 @@ static bool lane_hit(const RtGeometry *geometry, uint32_t id, const void *contex
         ray.dir.at[a] = word_at(rays, lanes, FIELD_DIR + a, i)->f;
     }
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, geometry, &ray, trace->crossings);
+    rt_hit_ray(&prepared, geometry, &ray, trace->hit_memory);
     return rt_object_hit(geometry, id, &prepared, t, NULL);
 }
 
@@ -347,7 +347,7 @@ void rt_embree_occluded(const struct RTCOccludedFunctionNArguments *arguments) {
 
 /* A context for one chunk of rays. */
 static Trace begin_trace(const RtEmbree *self, const RtScratch *scratch, bool coherent, bool counted) {
-    Trace trace = {.searches = ((Batch *)scratch->own)->searches, .crossings = scratch->crossings};
+    Trace trace = {.searches = ((Batch *)scratch->own)->searches, .hit_memory = scratch->hit_memory};
     trace.intersect = !self->user ? test_nearest : counted ? search_nearest_counted : search_nearest_timed;
     trace.occluded = !self->user ? test_any : counted ? search_any_counted : search_any_timed;
     init_context(&trace.context, coherent);
@@ -364,11 +364,11 @@ RT_KERNEL bool is_in_reach(const RtEmbree *self, const RtRay *ray, double shrink
 
 /* Writes a ray to the batch; one out of reach is answered at once, and is inactive in the batch. */
 RT_KERNEL void put_search(const RtEmbree *self, Batch *batch, unsigned lanes, size_t i, const RtRay *ray,
-                          RtCrossing *crossings, bool any, RtTally *tally) {
+                          RtHitMemory *hit_memory, bool any, RtTally *tally) {
     const RtGeometry *geometry = &self->base.scene->geometry;
     double stretch = stretch_of(ray->dir);
     Search *search = &batch->searches[i];
-    rt_hit_ray(&search->ray, geometry, ray, crossings);
+    rt_hit_ray(&search->ray, geometry, ray, hit_memory);
     search->shrink = 1 / stretch;
     search->best = RT_MISS;
     search->tally = tally;
@@ -392,7 +392,7 @@ RT_KERNEL void answer_user(const RtEmbree *self, const RtScratch *scratch, const
         size_t n = count - begin < chunk ? count - begin : chunk;
         for (size_t i = 0; i < n; i++) {
             RtTally *tally = tallies ? &tallies[ray[i].kind] : NULL;
-            put_search(self, batch, lanes, i, &ray[i], scratch->crossings, any, tally);
+            put_search(self, batch, lanes, i, &ray[i], scratch->hit_memory, any, tally);
         }
         bool coherent = is_coherent(ray);
         Trace trace = begin_trace(self, scratch, coherent, tallies != NULL);

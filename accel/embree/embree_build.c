@@ -296,6 +296,7 @@ const RtAccelOps rt_embree_ops = {
     .bests = bests,
     .best_count = sizeof bests / sizeof bests[0],
     .available = available,
+    .flat = true,
     .bytes = sizeof(RtEmbree),
     .build = build,
     .destroy = destroy,

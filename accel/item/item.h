@@ -106,7 +106,7 @@ typedef struct RtItemTile {
     const RtItemBuffer *buffer;
     uint32_t column, row;   /* of its upper left sample */
     uint32_t columns, rows; /* of it that are in the image */
-    RtCrossing *crossings;  /* of hit functions */
+    RtHitMemory *hit_memory;  /* of hit functions */
     RtTally tally;          /* of the hit functions asked */
 } RtItemTile;
 

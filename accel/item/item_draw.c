@@ -314,7 +314,7 @@ static void draw_block(RtItemTile *tile, uint32_t block, const RtItemFootprint *
             continue;
         ray.dir = rt_vec3(tile->dir[i][0], tile->dir[i][1], tile->dir[i][2]);
         RtPreparedRay prepared;
-        rt_hit_ray(&prepared, g, &ray, tile->crossings);
+        rt_hit_ray(&prepared, g, &ray, tile->hit_memory);
         rt_test_object(g, id, &prepared, false, &nearest, &tile->tally);
         tile->t[i] = nearest.t;
         tile->id[i] = nearest.object;
@@ -413,12 +413,12 @@ RtStatus rt_item_draw_all(RtItemBuffer *buffer, int threads, RtError *error) {
     RtStatus status = RT_OK;
     for (size_t k = 0; k < thread_count && status == RT_OK; k++) {
         drawing.drawn[k].buffer = buffer;
-        status = rt_crossings_alloc(g, &drawing.drawn[k].crossings, error);
+        status = rt_hit_memory_alloc(g, &drawing.drawn[k].hit_memory, error);
     }
     if (status == RT_OK) status = rt_parallel_for(tiles, threads, draw_tile, &drawing, error);
     for (size_t k = 0; k < thread_count; k++) {
         rt_tally_add(&buffer->base.build_tally, &drawing.drawn[k].tally);
-        rt_free(drawing.drawn[k].crossings);
+        rt_free(drawing.drawn[k].hit_memory);
     }
     return status;
 }

@@ -469,7 +469,7 @@ RT_KERNEL void answer_run(const RtAccel *accel, const RtScratch *scratch, const 
         } else {
             RtPreparedRay prepared;
             RtHit hit = RT_MISS;
-            rt_hit_ray(&prepared, g, ray, scratch->crossings);
+            rt_hit_ray(&prepared, g, ray, scratch->hit_memory);
             rt_test_object(g, id, &prepared, false, &hit, tally);
             rt_put_answer(&hit, i, false, hits, NULL, tally);
         }

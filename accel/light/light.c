@@ -433,9 +433,9 @@ static bool is_too_much(const RtTally *tally) {
 
 /* A ray from a hit to the light; false if the surface is turned away from it. */
 static bool make_probe(const RtScene *scene, const RtRay *ray, RtHit hit, uint32_t light,
-                       RtCrossing *crossings, RtRay *probe) {
+                       RtHitMemory *hit_memory, RtRay *probe) {
     RtVec3d point = rt_ray_point(ray, hit.t), dir = rt_widen(ray->dir);
-    RtVec3d side = rt_object_normals(&scene->geometry, hit.object, ray, hit.t, crossings).geometric;
+    RtVec3d side = rt_object_normals(&scene->geometry, hit.object, ray, hit.t, hit_memory).geometric;
     if (rt_dotd(side, dir) > 0) side = rt_scaled(side, -1);
     double reach = (double)hit.t * sqrt(rt_dotd(dir, dir)) + sqrt(rt_dotd(point, point));
     *probe = (RtRay){.org = rt_narrow(rt_add_scaledd(point, side, 0x1p-18 * reach)),
@@ -464,7 +464,7 @@ static RtStatus find_probes(RtLightBuffer *buffer, Probes *p, RtError *error) {
         RtHit hit;
         rt_nearest(&query, &ray, 1, &hit, tallies);
         p->count += hit.object != RT_NO_OBJECT && make_probe(scene, &ray, hit, i % scene->light_count,
-                                                             rt_query_crossings(&query), &p->rays[p->count]);
+                                                             rt_query_hit_memory(&query), &p->rays[p->count]);
     }
     rt_query_clear(&query);
     rt_tally_add(&buffer->base.build_tally, &tallies[RT_RAY_PRIMARY]);
@@ -603,6 +603,7 @@ const RtAccelOps rt_light_ops = {
     .paper = "Haines & Greenberg 1986, The Light Buffer: A Shadow-Testing Accelerator, CG&A 6(9)",
     RT_PARAMS_OF(params),
     RT_BEST("cells=0|256|512|1024"),
+    .flat = true,
     .kinds = 1u << RT_RAY_SHADOW,
     .trial = "light:cells=100", /* a scene of few objects has no cells but those asked for */
     .bytes = sizeof(RtLightBuffer),

@@ -113,7 +113,7 @@ RT_KERNEL void test_one(const RayBatch *batch, uint32_t ray, uint32_t id) {
     const RtGeometry *g = &batch->self->base.scene->geometry;
     RtPreparedRay prepared;
     RtHit hit = RT_MISS;
-    rt_hit_ray(&prepared, g, &batch->rays[ray], batch->scratch->crossings);
+    rt_hit_ray(&prepared, g, &batch->rays[ray], batch->scratch->hit_memory);
     if (rt_test_object(g, id, &prepared, true, &hit, batch->tally)) batch->occluders[ray] = id;
 }
 

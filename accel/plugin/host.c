@@ -340,7 +340,7 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
     memset(answers - CANARIES, CANARY, CANARIES);
     memset(answers, UNSET, count * size);
     query->now.face.host = query->counting && rt_trace_observer ? &observed_host : &host;
-    query->now.face.crossings = scratch->crossings;
+    query->now.face.crossings = scratch->hit_memory;
     query->scratch = scratch;
     query->now.face.object_count = query->counting ? 0 : query->geometry->object_count;
     query->now.face.ray = NULL;

@@ -94,14 +94,15 @@ typedef struct Bins {
     Bin bins[3][RT_MAX_BINS];
 } Bins;
 
-/* Clips a reference to `lo`..`hi` along `axis`: *part contains all of its surface there, or all of a CSG
- * tree's box (accel/clipping.h). False if there is none. */
+/* Clips a reference to `lo`..`hi` along `axis`: *part contains all of its surface there, or all of the
+ * box of a CSG tree or an instance (accel/clipping.h). False if there is none. */
 static bool ref_part(const Builder *b, const RtTreeRef *ref, int axis, float lo, float hi, RtBox *part) {
     RtBox box = ref->box;
     box.lo.at[axis] = rt_maxf(lo, box.lo.at[axis]);
     box.hi.at[axis] = rt_minf(hi, box.hi.at[axis]);
     *part = box;
-    if (rt_ref_shape(b->geometry->objects[ref->id]) == RT_SHAPE_CSG) return !rt_box_is_empty(box);
+    const RtShape shape = rt_ref_shape(b->geometry->objects[ref->id]);
+    if (shape == RT_SHAPE_CSG || shape == RT_SHAPE_INSTANCE) return !rt_box_is_empty(box);
     return rt_object_part(b->geometry, ref->id, &box, b->margin, part);
 }
 

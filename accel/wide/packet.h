@@ -240,7 +240,7 @@ RT_KERNEL void prepare_prefilter(Packet *p) {
 /* Ray i, prepared for hit functions. */
 RT_KERNEL const RtPreparedRay *packet_ray(Packet *p, const Query *q, uint32_t i) {
     if (!(p->prepared & one_ray(i)))
-        rt_hit_ray(&p->ray[i], q->geometry, &q->rays[p->index[i]], q->scratch->crossings);
+        rt_hit_ray(&p->ray[i], q->geometry, &q->rays[p->index[i]], q->scratch->hit_memory);
     p->prepared |= one_ray(i);
     return &p->ray[i];
 }

@@ -228,7 +228,7 @@ RT_KERNEL bool test_object(const RtGeometry *g, uint32_t id, const RtPreparedRay
 
 /* The ray of a state, prepared for hit functions. */
 RT_KERNEL const RtPreparedRay *state_ray(RayState *f, const Query *q) {
-    if (!f->prepared) rt_hit_ray(&f->ray, q->geometry, &q->rays[f->index], q->scratch->crossings);
+    if (!f->prepared) rt_hit_ray(&f->ray, q->geometry, &q->rays[f->index], q->scratch->hit_memory);
     f->prepared = true;
     return &f->ray;
 }

@@ -303,6 +303,7 @@ static RtStatus prepare(Run *run, RtError *error) {
     if (o->structure) RT_TRY(rt_structure_available(&spec, o->layer, error));
     if (o->stats) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_cli_open_scene(o->scene, &run->scene, error));
+    if (o->structure) RT_TRY(rt_cli_refuse_instances(&run->scene, "--structure", error));
     RT_TRY(rt_scene_sample(&run->scene, o->size[0], o->size[1], o->samples, o->corners, error));
     RtStatus status = build(run, 0, &run->accel, error);
     while (leave_out(run->options, status, 0, error)) status = build(run, 0, &run->accel, error);
@@ -382,7 +383,7 @@ static json_t *stats_json(const Run *run) {
     return json_pack(
         "{s:s, s:s, s:s, s:I, s:I, s:i, s:i, s:i, s:b, s:i, s:i, s:f, s:I, s:o, s:I, s:f, s:f, s:o, s:o}",
         "scene", run->scene.name, "accel", o->accels[0], "spec", b->spec, "objects",
-        (json_int_t)run->scene.geometry.object_count, "lights", (json_int_t)run->scene.light_count, "width",
+        (json_int_t)rt_geometry_id_count(&run->scene.geometry), "lights", (json_int_t)run->scene.light_count, "width",
         (int)s->width, "height", (int)s->height, "samples", (int)s->samples, "corners", (int)s->corners,
         "depth", (int)o->depth, "threads", rt_thread_count(o->threads), "build_seconds", b->build_seconds,
         "bytes", (json_int_t)b->description.bytes, "structure", rt_json_structure(&b->description), "rays",
@@ -422,11 +423,11 @@ static void print_counts(const Run *run, const char *spec, const RtFrame *counte
 
 static void print_summary(const Run *run) {
     const Options *o = run->options;
+    const uint32_t objects = rt_geometry_id_count(&run->scene.geometry);
     const RtSampling *s = &run->scene.sampling;
     const Built *b = &run->built[0];
     printf("%s: %u object%s, %u light%s. %s: built in %.3g s, %.3g MB. %u x %u pixels%s",
-           run->scene.name[0] ? run->scene.name : o->scene, run->scene.geometry.object_count,
-           rt_plural(run->scene.geometry.object_count), run->scene.light_count,
+           run->scene.name[0] ? run->scene.name : o->scene, objects, rt_plural(objects), run->scene.light_count,
            rt_plural(run->scene.light_count), b->spec, b->build_seconds, (double)b->description.bytes * 1e-6,
            s->width, s->height, s->corners ? " at their corners" : "");
     if (run->by_default) /* its speed says nothing about this one */

@@ -482,6 +482,7 @@ static RtStatus run(Options *o, RtError *error) {
     rt_spec_format(&spec, text);
     if (o->json) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_cli_open_scene(o->scene, &scene, error));
+    RT_TRY(rt_cli_refuse_instances(&scene, "trace", error));
     RT_TRY(rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error));
     if (o->pixel.given) RT_TRY(rt_cli_check_pixel(&scene.sampling, o->pixel, error));
     if (o->ray) RT_TRY(rt_cli_ray(o->ray, &o->given, error));

@@ -154,6 +154,7 @@ RtExactResult rt_exact_hit(const RtGeometry *geometry, uint32_t id, const RtExac
         break;
     case RT_SHAPE_CONE: hit = cone_hit(&geometry->cones[index], line, t); break;
     case RT_SHAPE_CSG: return rt_exact_csg_hit(&geometry->forest, &geometry->csgs[index], line, t);
+    case RT_SHAPE_INSTANCE: /* what is judged has none */
     case RT_SHAPE_COUNT: return RT_UNDECIDED;
     }
     return hit ? RT_HIT : RT_MISSED;

@@ -232,6 +232,7 @@ RtStatus rt_margin_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32
     case RT_SHAPE_SPHERE: sphere_margin(&making, &geometry->spheres[index]); break;
     case RT_SHAPE_CONE: cone_margin(&making, &geometry->cones[index]); break;
     case RT_SHAPE_CSG: return csg_margin(&making, geometry, index, error);
+    case RT_SHAPE_INSTANCE: /* what is judged has none */
     case RT_SHAPE_COUNT: break;
     }
     return RT_OK;

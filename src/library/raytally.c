@@ -200,7 +200,7 @@ void raytally_scene_free(raytally_scene *scene) {
 }
 
 uint32_t raytally_scene_object_count(const raytally_scene *scene) {
-    return scene->scene.geometry.object_count;
+    return rt_geometry_id_count(&scene->scene.geometry);
 }
 
 void raytally_scene_bounds(const raytally_scene *scene, float low[3], float high[3]) {

@@ -64,7 +64,7 @@ typedef struct Survey {
     RtTightness *out;      /* [table->choice_count] */
     RtBall *spheres;       /* [population->count] */
     Fitted *fitted;        /* [table->choice_count] */
-    RtCrossing *crossings; /* of hit functions */
+    RtHitMemory *hit_memory; /* of hit functions */
 } Survey;
 
 /* A random line through the sphere, as a ray that starts far behind it: extents may extend beyond the box of
@@ -85,7 +85,7 @@ static void count_lines(const Survey *survey, uint32_t index, uint64_t lines) {
     for (uint64_t k = 0; k < lines; k++) {
         RtRay through = random_line(&survey->spheres[index], &random);
         RtPreparedRay ray;
-        rt_hit_ray(&ray, geometry, &through, survey->crossings);
+        rt_hit_ray(&ray, geometry, &through, survey->hit_memory);
         RtHit hit = RT_MISS;
         bool met = rt_test_object(geometry, id, &ray, true, &hit, NULL);
         for (size_t c = 0; c < survey->table->choice_count; c++) {
@@ -140,7 +140,7 @@ static RtStatus count_population(const Population *population, const RtExtentsTa
                      .spheres = rt_arena_alloc(arena, population->count, sizeof(RtBall)),
                      .fitted = rt_arena_alloc(arena, count, sizeof(Fitted))};
     RT_TRY(rt_arena_check(arena, "the tightness of extents", error));
-    RT_TRY(rt_crossings_alloc(population->geometry, &survey.crossings, error));
+    RT_TRY(rt_hit_memory_alloc(population->geometry, &survey.hit_memory, error));
     const double whole = deal_lines(&survey);
     const RtBall scene = rt_bounding_sphere(&population->geometry->box);
     const double lines_of_scene = (double)table->lines * (scene.radius * scene.radius / whole);
@@ -148,7 +148,7 @@ static RtStatus count_population(const Population *population, const RtExtentsTa
         estimate_tightness(&out[c]);
         out[c].met = whole > 0 ? (double)out[c].extent_hits / lines_of_scene : 0;
     }
-    rt_free(survey.crossings);
+    rt_free(survey.hit_memory);
     return RT_OK;
 }
 
@@ -170,7 +170,7 @@ typedef struct Bench {
     RtRay chords[CHORDS]; /* that meet the box of their object */
     RtPreparedRay prepared[CHORDS];
     uint32_t objects[CHORDS]; /* of each chord */
-    RtCrossing *crossings;    /* of hit functions */
+    RtHitMemory *hit_memory;    /* of hit functions */
 } Bench;
 
 /* The extents of one choice. */
@@ -231,7 +231,7 @@ static void fill_bench(Bench *bench, const Population *population, uint64_t seed
         RtPreparedRay prepared = rt_ray_prepare(ray, &geometry->box);
         float enter;
         if (!rt_box_hit(&geometry->boxes[id], &prepared, prepared.tmax, &enter)) continue;
-        rt_hit_ray(&bench->prepared[bench->chord_count], geometry, ray, bench->crossings);
+        rt_hit_ray(&bench->prepared[bench->chord_count], geometry, ray, bench->hit_memory);
         bench->objects[bench->chord_count++] = id;
     }
     for (uint32_t k = 0; k < LINES; k++) bench->lines[k] = rt_random_chord(&geometry->box, &random);
@@ -274,7 +274,7 @@ static RtStatus time_population(const Population *population, const RtExtentsTab
     RtRunner *runners = rt_arena_alloc(arena, count + 1, sizeof(RtRunner));
     double(*times)[ROUNDS] = rt_arena_alloc(arena, count + 1, sizeof *times);
     RT_TRY(rt_arena_check(arena, "timing extents", error));
-    RT_TRY(rt_crossings_alloc(population->geometry, &bench->crossings, error));
+    RT_TRY(rt_hit_memory_alloc(population->geometry, &bench->hit_memory, error));
     fill_bench(bench, population, rounds.seed);
     RtStatus status = RT_OK;
     for (size_t c = 0; status == RT_OK && c < count; c++) {
@@ -292,7 +292,7 @@ static RtStatus time_population(const Population *population, const RtExtentsTab
     if (status == RT_OK) status = rt_rounds_run(runners, count + any, &rounds, &done, error);
     if (status == RT_OK) conclude(times, count, of);
     of->object = any ? rt_estimate(times[count], ROUNDS) : rt_estimate_exactly((double)NAN);
-    rt_free(bench->crossings);
+    rt_free(bench->hit_memory);
     return status;
 }
 

@@ -34,7 +34,7 @@ typedef struct Drawing {
     double farthest;         /* the largest t that is drawn */
     Window detail, overview; /* overview.width is 0 if the detail shows the whole path */
     const Window *window;    /* being drawn: one of these */
-    RtCrossing *crossings;
+    RtHitMemory *hit_memory;
 } Drawing;
 
 static const RtColor dark = {{85, 85, 85}}, light = {{153, 153, 153}}, hit_color = {{204, 0, 0}};
@@ -171,7 +171,7 @@ static void draw_extent(const Drawing *d, uint32_t i) {
 
 static void draw_object(const Drawing *d, const RtPathRow *row) {
     if (row->index >= d->geometry->object_count) return;
-    rt_section_add_object(&d->window->section, d->cairo, d->geometry, row->index, d->crossings);
+    rt_section_add_object(&d->window->section, d->cairo, d->geometry, row->index, d->hit_memory);
     rt_paint(d->cairo, row->met ? (RtStyle){hit_color, 2, 0.25, false} : (RtStyle){dark, 1, 0.1, false});
 }
 
@@ -213,7 +213,7 @@ static void draw_surroundings(const Drawing *d) {
     const RtAccel *layer = layer_of(d->path);
     for (uint32_t id = 0; id < d->geometry->object_count; id++) {
         if (is_seen(d, &d->geometry->boxes[id], 0.5))
-            rt_section_add_object(&d->window->section, d->cairo, d->geometry, id, d->crossings);
+            rt_section_add_object(&d->window->section, d->cairo, d->geometry, id, d->hit_memory);
     }
     rt_paint(d->cairo, untested);
     if (!layer) return;
@@ -451,9 +451,9 @@ RtStatus rt_path_draw(const RtPath *path, const RtScene *scene, const char *titl
     const double bars = TOP + SECTION + GAP, bottom = bars + ROW * draw_rows(&d, bars, false, &left);
     RT_TRY(rt_canvas_open(&canvas, file, WIDTH, bottom + 30, TITLE_SIZE, error));
     d.cairo = canvas.cairo;
-    RtStatus status = rt_crossings_alloc(d.geometry, &d.crossings, error);
+    RtStatus status = rt_hit_memory_alloc(d.geometry, &d.hit_memory, error);
     if (status == RT_OK) draw(&d, title, spec, bars, bottom);
     if (status == RT_OK && path->accel) status = rt_accel_check(path->accel, error);
-    rt_free(d.crossings);
+    rt_free(d.hit_memory);
     return rt_canvas_close(&canvas, status, error);
 }

@@ -21,7 +21,7 @@ typedef struct Drawing {
     const RtScene *scene;
     cairo_t *cairo;
     RtSection section;
-    RtCrossing *crossings;
+    RtHitMemory *hit_memory;
     double width, height; /* of the section, pixels */
 } Drawing;
 
@@ -173,7 +173,7 @@ static RtColor color_of(RtVec3 linear) {
 
 static void draw_object(const Drawing *d, uint32_t id, bool met) {
     const RtScene *scene = d->scene;
-    rt_section_add_object(&d->section, d->cairo, &scene->geometry, id, d->crossings);
+    rt_section_add_object(&d->section, d->cairo, &scene->geometry, id, d->hit_memory);
     if (met) {
         RtColor color = color_of(scene->materials[scene->material_of[id]].color);
         cairo_path_t *outline = cairo_copy_path(d->cairo);
@@ -364,8 +364,8 @@ RtStatus rt_ray_tree_draw(const RtRayTree *tree, const RtScene *scene, const cha
                           RtError *error) {
     Drawing d = {.tree = tree, .scene = scene};
     if (tree->count == 0) return rt_fail(error, RT_BAD_INPUT, "the pixel has no ray to draw");
-    RT_TRY(rt_crossings_alloc(&scene->geometry, &d.crossings, error));
+    RT_TRY(rt_hit_memory_alloc(&scene->geometry, &d.hit_memory, error));
     RtStatus status = draw(&d, title, file, error);
-    rt_free(d.crossings);
+    rt_free(d.hit_memory);
     return status;
 }

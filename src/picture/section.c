@@ -224,14 +224,14 @@ static void add_tangent(const RtSection *section, cairo_t *cairo, RtVec3d at, Rt
 
 /* Follows one line of the plane through the object. */
 static void add_crossings(const RtSection *section, cairo_t *cairo, const RtGeometry *g, uint32_t id,
-                          RtVec3d from, RtVec3d along, RtCrossing *crossings) {
+                          RtVec3d from, RtVec3d along, RtHitMemory *hit_memory) {
     RtRay ray = {.org = rt_narrow(from), .dir = rt_narrow(along), .tmax = INFINITY};
     RtPreparedRay prepared;
     float t;
     for (int i = 0; i < MOST_CROSSINGS; i++) {
-        rt_hit_ray(&prepared, g, &ray, crossings);
+        rt_hit_ray(&prepared, g, &ray, hit_memory);
         if (!rt_object_hit(g, id, &prepared, &t, NULL)) return;
-        RtNormals normals = rt_object_normals(g, id, &ray, t, crossings);
+        RtNormals normals = rt_object_normals(g, id, &ray, t, hit_memory);
         add_tangent(section, cairo, rt_ray_point(&ray, t), normals.geometric, along);
         ray.tmin = nextafterf(t, INFINITY);
     }
@@ -249,7 +249,7 @@ static void visible(const RtSection *section, cairo_t *cairo, RtVec3d middle, Rt
 
 /* Lines over the object's ball, in direction `along`, side by side in direction `across`. */
 static void scan(const RtSection *section, cairo_t *cairo, const RtGeometry *g, uint32_t id, RtVec3d along,
-                 RtVec3d across, RtCrossing *crossings) {
+                 RtVec3d across, RtHitMemory *hit_memory) {
     const RtBall ball = rt_object_ball(g, id);
     double off = rt_dotd(rt_subd(ball.center, section->on), section->normal);
     if (fabs(off) >= ball.radius) return;
@@ -261,11 +261,11 @@ static void scan(const RtSection *section, cairo_t *cairo, const RtGeometry *g, 
     from = fmax(from, -radius), to = fmin(to, radius);
     for (int i = 0; from + i * step <= to; i++)
         add_crossings(section, cairo, g, id, rt_add_scaledd(start, across, from + i * step), along,
-                      crossings);
+                      hit_memory);
 }
 
 void rt_section_add_object(const RtSection *section, cairo_t *cairo, const RtGeometry *geometry, uint32_t id,
-                           RtCrossing *crossings) {
+                           RtHitMemory *hit_memory) {
     const uint32_t index = rt_ref_index(geometry->objects[id]);
     switch (rt_ref_shape(geometry->objects[id])) {
     case RT_SHAPE_SPHERE:
@@ -278,9 +278,10 @@ void rt_section_add_object(const RtSection *section, cairo_t *cairo, const RtGeo
         break;
     case RT_SHAPE_CONE:
     case RT_SHAPE_CSG:
-        scan(section, cairo, geometry, id, section->right, section->up, crossings);
-        scan(section, cairo, geometry, id, section->up, section->right, crossings);
+        scan(section, cairo, geometry, id, section->right, section->up, hit_memory);
+        scan(section, cairo, geometry, id, section->up, section->right, hit_memory);
         break;
+    case RT_SHAPE_INSTANCE: /* what is drawn has none */
     case RT_SHAPE_COUNT: break;
     }
 }

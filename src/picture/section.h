@@ -33,9 +33,9 @@ bool rt_section_add_extent(const RtSection *section, cairo_t *cairo, const RtBox
 
 /* Adds the outline of object `id` in the plane: a circle, a line, or for cones and CSG trees short tangents
  * where lines of the plane enter and leave it, which enclose no area. Nothing if the plane misses it.
- * `crossings` is of rt_crossings_alloc. */
+ * `hit_memory` is of rt_hit_memory_alloc. */
 void rt_section_add_object(const RtSection *section, cairo_t *cairo, const RtGeometry *geometry, uint32_t id,
-                           RtCrossing *crossings);
+                           RtHitMemory *hit_memory);
 
 /* ---- extents in space ---- */
 

@@ -225,13 +225,13 @@ static void choose_section(Drawing *d) {
 
 static RtStatus draw_section(Drawing *d, RtError *error) {
     const RtGeometry *g = &d->layer->scene->geometry;
-    RtCrossing *crossings;
-    RT_TRY(rt_crossings_alloc(g, &crossings, error));
+    RtHitMemory *hit_memory;
+    RT_TRY(rt_hit_memory_alloc(g, &hit_memory, error));
     for (uint32_t id = 0; id < g->object_count; id++) {
         if (rt_section_add_extent(&d->section, NULL, &(RtBoxView){.box = &g->boxes[id]}))
-            rt_section_add_object(&d->section, d->cairo, g, id, crossings);
+            rt_section_add_object(&d->section, d->cairo, g, id, hit_memory);
     }
-    rt_free(crossings);
+    rt_free(hit_memory);
     rt_set_color(d->cairo, object_color, 0.35);
     cairo_fill_preserve(d->cairo);
     rt_set_color(d->cairo, object_color, 1);

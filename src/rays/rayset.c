@@ -37,10 +37,10 @@ void rt_rayset_seal(RtRaySet *set) {
 /* ---- diffuse rays ---- */
 
 /* The diffuse ray from the hit of `primary`, on the side that it came from. */
-static RtRay bounce(const Recorder *recorder, const RtRay *primary, RtCrossing *crossings) {
+static RtRay bounce(const Recorder *recorder, const RtRay *primary, RtHitMemory *hit_memory) {
     uint32_t sample = primary->source;
     RtHit hit = {recorder->frame.depth[sample], recorder->frame.object[sample]};
-    RtSurface surface = rt_surface(recorder->scene, primary, hit, crossings);
+    RtSurface surface = rt_surface(recorder->scene, primary, hit, hit_memory);
     RtRandom random = rt_random(recorder->recording->seed, stream_of(RT_RAY_DIFFUSE, sample));
     return (RtRay){.org = rt_narrow(rt_add_scaledd(surface.point, surface.side, surface.offset)),
                    .dir = rt_narrow(rt_random_cosine(&random, surface.side)),
@@ -55,14 +55,14 @@ static RtStatus make_diffuse(Recorder *recorder, RtError *error) {
     RtRaySet *set = &recorder->sets[RT_RAY_DIFFUSE];
     RT_TRY(rt_rayset_init(set, RT_RAY_DIFFUSE, primary->count, error));
     set->count = 0;
-    RtCrossing *crossings;
-    RT_TRY(rt_crossings_alloc(&recorder->scene->geometry, &crossings, error));
+    RtHitMemory *hit_memory;
+    RT_TRY(rt_hit_memory_alloc(&recorder->scene->geometry, &hit_memory, error));
     for (uint64_t i = 0; i < primary->count; i++) {
         if (recorder->frame.object[primary->rays[i].source] == RT_NO_OBJECT) continue;
-        RtRay ray = bounce(recorder, &primary->rays[i], crossings);
+        RtRay ray = bounce(recorder, &primary->rays[i], hit_memory);
         if (rt_ray_is_valid(&ray)) set->rays[set->count++] = ray;
     }
-    rt_free(crossings);
+    rt_free(hit_memory);
     return RT_OK;
 }
 

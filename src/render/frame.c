@@ -234,7 +234,7 @@ static uint32_t find_surfaces(Worker *worker, const RtRay *rays, const Path *pat
         RtVec3 light = scene->background;
         if (worker->hits[i].object != RT_NO_OBJECT) {
             surface = &worker->surfaces[surface_count];
-            *surface = rt_surface(scene, &rays[i], worker->hits[i], rt_query_crossings(&worker->query));
+            *surface = rt_surface(scene, &rays[i], worker->hits[i], rt_query_hit_memory(&worker->query));
             light = rt_ambient_light(scene, surface);
         }
         add_light(worker, paths[i], light);

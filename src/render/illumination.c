@@ -43,27 +43,37 @@ static RtVec3 textured_color(const RtScene *scene, const RtMaterial *m, uint32_t
     return rt_texture_color(&m->texture, m->color, u, v);
 }
 
-RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit, RtCrossing *crossings) {
-    const RtGeometry *g = &scene->geometry;
-    RtVec3d point = rt_ray_point(ray, hit.t);
-    RtNormals normals = rt_object_normals(g, hit.object, ray, hit.t, crossings);
-    const RtMaterial *material =
-        &scene->materials[normals.solid == RT_NO_SOLID ? scene->material_of[hit.object]
-                                                       : g->forest.set.solids[normals.solid].material];
+RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit, RtHitMemory *hit_memory) {
+    RtPlace place;
+    rt_scene_place(scene, hit.object, ray, &place);
+    const RtGeometry *g = &place.scene->geometry;
+    const RtVec3d point = rt_ray_point(ray, hit.t);
+    RtNormals normals = rt_object_normals(g, place.object, &place.ray, hit.t, hit_memory);
+    const RtMaterial *material = place.material;
+    if (!material)
+        material =
+            &place.scene->materials[normals.solid == RT_NO_SOLID ? place.scene->material_of[place.object]
+                                                                 : g->forest.set.solids[normals.solid].material];
+    const RtVec3 color = material->texture.kind == RT_TEXTURE_NONE
+                             ? material->color
+                             : textured_color(place.scene, material, place.object,
+                                              rt_ray_point(&place.ray, hit.t), normals.geometric);
+    if (place.scene != scene) {
+        normals.geometric = rt_normalized(rt_transform_normald(&place.to_world, normals.geometric));
+        normals.shading = rt_normalized(rt_transform_normald(&place.to_world, normals.shading));
+    }
     RtVec3d dir = rt_widen(ray->dir);
     bool entering = rt_dotd(dir, normals.geometric) < 0;
     RtVec3d side = entering ? normals.geometric : rt_scaled(normals.geometric, -1);
     bool turn = rt_dotd(normals.shading, side) < 0;
     return (RtSurface){
         .material = material,
-        .color = material->texture.kind == RT_TEXTURE_NONE
-                     ? material->color
-                     : textured_color(scene, material, hit.object, point, normals.geometric),
+        .color = color,
         .point = point,
         .arriving = rt_normalized(dir),
         .side = side,
         .normal = turn ? rt_scaled(normals.shading, -1) : normals.shading,
-        .offset = offset_of(g, hit.object, point, (double)hit.t * max_norm(dir)),
+        .offset = offset_of(&scene->geometry, rt_geometry_holder(&scene->geometry, hit.object), point, (double)hit.t * max_norm(dir)),
         .entering = entering,
     };
 }

@@ -46,8 +46,8 @@ typedef struct RtSurface {
     bool entering;    /* the ray came from outside, against the object's own geometric normal */
 } RtSurface;
 
-/* `hit` is a hit of `ray`, not a miss; `crossings` is of rt_crossings_alloc. */
-RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit, RtCrossing *crossings);
+/* `hit` is a hit of `ray`, not a miss; `hit_memory` is of rt_hit_memory_alloc. */
+RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit, RtHitMemory *hit_memory);
 
 /* The surface seen from outside: normals on the side of the object's own geometric normal. For programs
  * that light surfaces from outside whichever side a ray comes from, so that objects seen through glass are

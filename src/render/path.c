@@ -206,7 +206,7 @@ uint32_t rt_path_run(const RtPath *path, uint32_t first) {
 
 /* ---- which ray ---- */
 
-static RtStatus spawn(const RtAccel *accel, RtRayKind kind, uint32_t light, RtRay *ray, RtCrossing *crossings,
+static RtStatus spawn(const RtAccel *accel, RtRayKind kind, uint32_t light, RtRay *ray, RtHitMemory *hit_memory,
                       RtHit hit, RtError *error) {
     const RtScene *scene = accel->scene;
     RtRay spawned[RT_MAX_SPAWN];
@@ -216,7 +216,7 @@ static RtStatus spawn(const RtAccel *accel, RtRayKind kind, uint32_t light, RtRa
         return rt_fail(error, RT_BAD_INPUT,
                        "the primary ray hits nothing, so no %s ray follows: choose another pixel",
                        rt_ray_kind_name(kind));
-    RtSurface surface = rt_surface(scene, ray, hit, crossings);
+    RtSurface surface = rt_surface(scene, ray, hit, hit_memory);
     if (kind == RT_RAY_SHADOW) {
         if (light >= scene->light_count)
             return rt_fail(error, RT_BAD_INPUT, "there is no light %u: the scene has %u, numbered from 0",
@@ -247,5 +247,5 @@ RtStatus rt_path_ray(const RtAccel *accel, RtRayKind kind, uint32_t column, uint
     if (kind == RT_RAY_PRIMARY) return RT_OK;
     RT_TRY(rt_query_init(&query, accel, error));
     rt_nearest(&query, ray, 1, &hit, NULL);
-    return spawn(accel, kind, light, ray, rt_query_crossings(&query), hit, error);
+    return spawn(accel, kind, light, ray, rt_query_hit_memory(&query), hit, error);
 }

@@ -154,6 +154,7 @@ static void put_drawn(Shapes *shapes, uint32_t object) {
         break;
     case RT_SHAPE_TRIANGLE: put_polygon(shapes, object, g->triangles[i].v, 3); break;
     case RT_SHAPE_CONE: put_cone(shapes, object, &g->cones[i]); break;
+    case RT_SHAPE_INSTANCE: /* what is drawn has none */
     case RT_SHAPE_CSG:
         put_box(&shapes->parts[BOXES], &g->boxes[object]);
         end_part(shapes, BOXES, object);

@@ -199,7 +199,7 @@ static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
                               rt_workload_is_timed(workload) ? workload->others : NULL, whole_rays, error));
     RtWorkloadResult *result = &workload->results->workloads[workload->index];
     RtWorkloadResult now = {.known = true,
-                            .objects = workload->scene->geometry.object_count,
+                            .objects = rt_geometry_id_count(&workload->scene->geometry),
                             .width = workload->scene->sampling.width,
                             .height = workload->scene->sampling.height,
                             .scene = rt_scene_fingerprint(workload->scene)};

@@ -309,7 +309,8 @@ static json_t *record_json(const RtReplayRecord *r, RtError *error) {
     const RtFailure *q = r->failure;
     json_t *rays = json_array();
     for (size_t i = 0; i < q->count; i++) json_array_append_new(rays, ray_json(&q->rays[i]));
-    bool whole = !rt_builtin_find(r->scene_spec) && r->scene->geometry.object_count <= MOST_OBJECTS;
+    const RtGeometry *g = &r->scene->geometry;
+    bool whole = !rt_builtin_find(r->scene_spec) && g->object_count <= MOST_OBJECTS && g->instance_count == 0;
     return json_pack(
         "{s:i, s:s, s:o, s:o, s:[I, I], s:s, s:s, s:s, s:I, s:I, s:o, s:o, s:o, s:o}", "format",
         RT_FILE_FORMAT, "scene", r->scene_spec, "fingerprint", rt_json_hex(rt_scene_fingerprint(r->scene)),

@@ -61,6 +61,11 @@ static RtStatus load_recorded(Run *run, RtError *error) {
     const RtVerify *v = run->verify;
     for (uint32_t i = 0; i < v->spec_count; i++) {
         if (!v->specs[i].recorded) continue;
+        if (run->scenes[0].geometry.instance_count > 0)
+            return rt_fail(error, RT_BAD_INPUT,
+                           "%s: recorded hits are judged on scenes without instances: `raytally convert` writes one "
+                           "of copies",
+                           run->verify->scenes[0]);
         RT_TRY(rt_hits_load(v->specs[i].spec, v->rays.count, run->scenes[0].geometry.object_count,
                             &run->recorded, error));
         for (uint64_t k = 0; k < v->rays.count; k++) {
@@ -222,7 +227,8 @@ static RtStatus keep_failure(Run *run, const RtVerifyScene *scene, const RtVerif
     RtFailure failure;
     RtAnswer answer;
     RtShrunk shrunk = {.count = scene->scene.geometry.object_count};
-    uint64_t budget = shrink_budget(run, spec->spec);
+    const bool whole = scene->scene.geometry.instance_count > 0; /* objects of parts cannot be left out */
+    uint64_t budget = whole ? 0 : shrink_budget(run, spec->spec);
     char path[RT_MAX_PATH];
     RT_TRY(rt_failure_of(&scene->reference, wrong, spec->spec, run->verify->rays.threads, &failure, &answer,
                          error));

@@ -93,7 +93,7 @@ static RtVec3d point_of_csg(Generator *m, uint32_t id, Where where) {
     if (where == ON_SURFACE) {
         RtRay ray = rt_random_chord(&tree->box, &m->random);
         RtPreparedRay prepared = rt_ray_prepare(&ray, &tree->box);
-        prepared.crossings = rt_query_crossings(m->query);
+        prepared.crossings = rt_query_hit_memory(m->query);
         float t;
         if (rt_object_hit(g, id, &prepared, &t, NULL)) return rt_ray_point(&ray, t);
     }
@@ -105,6 +105,17 @@ static RtVec3d point_of_csg(Generator *m, uint32_t id, Where where) {
         if (a != along) p.at[a] = (double)(below(m, 2) ? box->hi : box->lo).at[a];
     }
     return p;
+}
+
+static RtVec3d point_of_object(Generator *m, Where where, uint32_t *id);
+
+static RtVec3d point_of_instance(Generator *m, const RtInstance *instance, Where where) {
+    const RtGeometry *outside = m->geometry;
+    uint32_t id;
+    m->geometry = instance->geometry;
+    const RtVec3d inside = point_of_object(m, where, &id);
+    m->geometry = outside;
+    return rt_transform_pointd(&instance->to_world, inside);
 }
 
 /* A point of a random object, and its id (RT_NO_OBJECT if there is none). */
@@ -121,6 +132,7 @@ static RtVec3d point_of_object(Generator *m, Where where, uint32_t *id) {
         return point_of_vertices(m, rt_polygon_vertices(g, index), g->polygons[index].count, where);
     case RT_SHAPE_CONE: return point_of_cone(m, &g->cones[index], where != ON_SURFACE);
     case RT_SHAPE_CSG: return point_of_csg(m, *id, where);
+    case RT_SHAPE_INSTANCE: return point_of_instance(m, &g->instances[index], where);
     case RT_SHAPE_COUNT: break;
     }
     return point_in_scene(m);
@@ -218,7 +230,7 @@ static RtVec3d direction_along(Generator *m, uint32_t id, RtVec3d p, RtVec3d *no
     *normal = rt_vec3d(0, 0, 0);
     if (id == RT_NO_OBJECT) return dir;
     RtRay at = ray_along(p, dir);
-    *normal = rt_object_normals(m->geometry, id, &at, 0, rt_query_crossings(m->query)).geometric;
+    *normal = rt_object_normals(m->geometry, id, &at, 0, rt_query_hit_memory(m->query)).geometric;
     return rt_add_scaledd(dir, *normal, -rt_dotd(dir, *normal));
 }
 

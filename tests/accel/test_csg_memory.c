@@ -41,7 +41,7 @@ static Row make_balls(void) {
 
 static bool meets(const RtScene *scene, const RtRay *ray, float *t) {
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, &scene->geometry, ray, crossings_of_tests());
+    rt_hit_ray(&prepared, &scene->geometry, ray, hit_memory_of_tests());
     return rt_object_hit(&scene->geometry, 0, &prepared, t, NULL);
 }
 
@@ -50,18 +50,18 @@ static bool meets(const RtScene *scene, const RtRay *ray, float *t) {
 RT_TEST(the_room_for_hits_is_had_or_it_is_a_status) {
     OWNED(clear_row) Row row = make_balls();
     RtGeometry empty = {0};
-    RtCrossing *crossings = crossings_of_tests();
-    assert_ok(rt_crossings_alloc(&empty, &crossings, error));
-    assert_null(crossings);
+    RtHitMemory *hit_memory = hit_memory_of_tests();
+    assert_ok(rt_hit_memory_alloc(&empty, &hit_memory, error));
+    assert_null(hit_memory);
     rt_alloc_fail_at(1);
-    assert_fails_with(rt_crossings_alloc(&row.scene.geometry, &crossings, error), RT_NO_MEMORY,
+    assert_fails_with(rt_hit_memory_alloc(&row.scene.geometry, &hit_memory, error), RT_NO_MEMORY,
                       "the crossings of a ray");
-    assert_null(crossings);
+    assert_null(hit_memory);
     /* So many that it is not known how many. */
     row.scene.geometry.csgs[0].most_crossings = UINT32_MAX;
-    assert_fails_with(rt_crossings_alloc(&row.scene.geometry, &crossings, error), RT_NO_MEMORY,
+    assert_fails_with(rt_hit_memory_alloc(&row.scene.geometry, &hit_memory, error), RT_NO_MEMORY,
                       "the crossings of a ray");
-    assert_null(crossings);
+    assert_null(hit_memory);
 }
 
 /* Runs all four kernels, and computes a normal, while no allocation may succeed. */
@@ -80,8 +80,8 @@ static void trace_without_memory(const char *spec, Row *row, const RtHit *expect
         rt_nearest(&query, row->rays, RAYS, hits[counted], counted ? tallies : NULL);
         rt_occluded(&query, row->rays, RAYS, blocked[counted], counted ? tallies : NULL);
     }
-    RtCrossing *crossings = rt_query_crossings(&query);
-    RtNormals normals = rt_object_normals(&row->scene.geometry, 0, &row->rays[0], expected[0].t, crossings);
+    RtHitMemory *hit_memory = rt_query_hit_memory(&query);
+    RtNormals normals = rt_object_normals(&row->scene.geometry, 0, &row->rays[0], expected[0].t, hit_memory);
     assert_null(rt_alloc(1, 1)); /* the first one asked for */
     assert_true(normals.geometric.x == -1);
     for (int i = 0; i < RAYS; i++) {
@@ -188,10 +188,10 @@ RT_TEST(no_shortage_of_memory_becomes_a_verdict) {
 RT_TEST(no_shortage_of_memory_becomes_a_miss) {
     static const char crossings[] = "the crossings of a ray";
     OWNED(clear_row) Row row = make_balls();
-    assert_every_shortage_is_a_status(trace_frame, &row, crossings);
-    assert_every_shortage_is_a_status(build_item, &row, crossings);
-    assert_every_shortage_is_a_status(ask, &row, crossings);
-    assert_every_shortage_is_a_status(stack_of_overlays, &row, crossings);
+    assert_every_shortage_is_a_status(trace_frame, &row, hit_memory);
+    assert_every_shortage_is_a_status(build_item, &row, hit_memory);
+    assert_every_shortage_is_a_status(ask, &row, hit_memory);
+    assert_every_shortage_is_a_status(stack_of_overlays, &row, hit_memory);
 }
 
 RT_TESTS(csg_memory, NULL, assert_nothing_is_kept)

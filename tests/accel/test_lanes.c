@@ -37,13 +37,13 @@ static Asked begin_asking(const RtRay *rays, size_t count) {
 
 /* One ray, one object after the other. */
 static void by_definition(const RtGeometry *geometry, Asked *asked) {
-    OWNED_MEMORY RtCrossing *crossings;
-    assert_ok(rt_crossings_alloc(geometry, &crossings, error));
+    OWNED_MEMORY RtHitMemory *hit_memory;
+    assert_ok(rt_hit_memory_alloc(geometry, &hit_memory, error));
     for (size_t i = 0; i < asked->count; i++) {
         const RtRay *ray = &asked->rays[i];
         RtPreparedRay prepared;
         RtHit first = RT_MISS;
-        rt_hit_ray(&prepared, geometry, ray, crossings);
+        rt_hit_ray(&prepared, geometry, ray, hit_memory);
         asked->hits[i] = RT_MISS;
         rt_test_all(geometry, &prepared, false, &asked->hits[i], &asked->nearest[ray->kind]);
         rt_test_all(geometry, &prepared, true, &first, &asked->occluded[ray->kind]);

@@ -43,11 +43,11 @@ static inline bool same_place(const RtGeometry *g, uint32_t id, const RtWideRay 
     return off <= 0x1p-8 * size + 2 * border_unit(g, id, line);
 }
 
-/* The result of our hit function; `crossings` comes from rt_crossings_alloc. */
+/* The result of our hit function; `hit_memory` comes from rt_hit_memory_alloc. */
 static inline Decision decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *ray,
-                                   RtCrossing *crossings) {
+                                   RtHitMemory *hit_memory) {
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, geometry, ray, crossings);
+    rt_hit_ray(&prepared, geometry, ray, hit_memory);
     Decision decision = {.t = INFINITY};
     decision.hit = rt_object_hit(geometry, id, &prepared, &decision.t, NULL);
     return decision;

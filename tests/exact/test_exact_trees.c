@@ -371,7 +371,7 @@ static void judge(const RtGeometry *g, const RtRay *ray, int *hits) {
     RtWideRay line = rt_wide_ray(ray);
     if (ray->tmin == ray->tmax || has_few_digits(g, &line)) return;
     for (uint32_t id = 0; id < g->object_count; id++) {
-        Decision ours = decision_of(g, id, ray, crossings_of_tests());
+        Decision ours = decision_of(g, id, ray, hit_memory_of_tests());
         if (!ours.hit && id != ruling.object) continue;
         if (check_decision(g, id, &line, ours) == RT_HIT) continue;
         double border = border_distance(g, id, ray, ours);

@@ -328,9 +328,9 @@ static RtRay ray_to_box(Range *r, uint32_t id) {
 /* Through a point of the surface that an ordinary ray hits, by an angle with it; one of 0 makes a tangent. */
 static RtRay ray_along_surface(Range *r, uint32_t id, double angle) {
     RtRay ray = ray_to_box(r, id);
-    Decision decision = decision_of(r->geometry, id, &ray, crossings_of_tests());
+    Decision decision = decision_of(r->geometry, id, &ray, hit_memory_of_tests());
     if (!decision.hit) return ray;
-    RtVec3d normal = rt_object_normals(r->geometry, id, &ray, decision.t, crossings_of_tests()).geometric;
+    RtVec3d normal = rt_object_normals(r->geometry, id, &ray, decision.t, hit_memory_of_tests()).geometric;
     RtVec3d tangent = rt_normalized(rt_crossd(normal, rt_random_direction(&r->random)));
     RtVec3 point = rt_narrow(rt_ray_point(&ray, decision.t));
     return ray_towards(r, point, rt_normalized(rt_add_scaledd(tangent, normal, angle)));
@@ -377,7 +377,7 @@ static RtRay ray_to_border(Range *r, uint32_t id) {
 /* From where an ordinary ray hits the object, if it does. */
 static RtRay ray_from_surface(Range *r, uint32_t id) {
     RtRay ray = ray_to_box(r, id);
-    Decision decision = decision_of(r->geometry, id, &ray, crossings_of_tests());
+    Decision decision = decision_of(r->geometry, id, &ray, hit_memory_of_tests());
     if (!decision.hit) return ray;
     ray.org = rt_narrow(rt_ray_point(&ray, decision.t));
     ray.dir = rt_narrow(rt_random_direction(&r->random));
@@ -404,14 +404,14 @@ static int by_size(const void *a, const void *b) {
 static double off_surface(const Range *r, uint32_t id, const RtRay *ray, float t, double error) {
     const RtGeometry *g = r->geometry;
     RtWideRay line = rt_wide_ray(ray);
-    double rate = rt_dotd(rt_object_normals(g, id, ray, t, crossings_of_tests()).geometric, line.dir);
+    double rate = rt_dotd(rt_object_normals(g, id, ray, t, hit_memory_of_tests()).geometric, line.dir);
     return fabs(error * rate) / border_unit(g, id, &line);
 }
 
 /* `errors` has room for one more at out->hits. */
 static void measure_ray(const Range *r, uint32_t id, const RtRay *ray, double *errors, Precision *out) {
     const RtGeometry *g = r->geometry;
-    Decision ours = decision_of(g, id, ray, crossings_of_tests());
+    Decision ours = decision_of(g, id, ray, hit_memory_of_tests());
     long double off = 0, ulps = 0;
     RtExactResult exact = error_of_t(g, id, ray, ours.hit ? ours.t : 0, &off, &ulps);
     RtWideRay line = rt_wide_ray(ray);

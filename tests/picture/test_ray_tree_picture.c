@@ -20,11 +20,11 @@ static void outline(const RtScene *scene, double at, double extents[4]) {
                                .scale = 100};
     cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 400, 400);
     cairo_t *cairo = cairo_create(surface);
-    RtCrossing *crossings;
-    assert_ok(rt_crossings_alloc(&scene->geometry, &crossings, error));
-    rt_section_add_object(&section, cairo, &scene->geometry, 0, crossings);
+    RtHitMemory *hit_memory;
+    assert_ok(rt_hit_memory_alloc(&scene->geometry, &hit_memory, error));
+    rt_section_add_object(&section, cairo, &scene->geometry, 0, hit_memory);
     cairo_path_extents(cairo, &extents[0], &extents[1], &extents[2], &extents[3]);
-    rt_free(crossings);
+    rt_free(hit_memory);
     cairo_destroy(cairo);
     cairo_surface_destroy(surface);
 }

@@ -32,7 +32,7 @@ static RtScene make_bubble(void) {
 }
 
 static RtSurface surface_at(const RtScene *scene, const RtRay *ray, float t) {
-    return rt_surface(scene, ray, (RtHit){t, 0}, crossings_of_tests());
+    return rt_surface(scene, ray, (RtHit){t, 0}, hit_memory_of_tests());
 }
 
 /* A random tree as the only object. */

@@ -66,7 +66,7 @@ static void compare_ray(const RtScene *scene, const Model *model, RtQuery *mesh,
         farthest = rt_maxf(hits[i].t, farthest);
     }
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, &scene->geometry, ray, crossings_of_tests());
+    rt_hit_ray(&prepared, &scene->geometry, ray, hit_memory_of_tests());
     bool hit = rt_object_hit(&scene->geometry, model->object, &prepared, &t, NULL);
     float slack = (float)(model->error / rt_lengthd(rt_widen(ray->dir)));
     sum->hits += hit;

@@ -97,11 +97,11 @@ typedef struct RtHit {
  * double, and Embree, which drops anything above 1.8e18, sees all that we see. */
 #define RT_MAX_COORDINATE 5e17f
 
-struct RtCrossing;
+struct RtHitMemory;
 
 /* A ray with everything that box and hit tests need, computed once. It is that of the plugin interface, so
- * that plugins test boxes and objects by the same code. `crossings` is scratch memory of hit functions
- * (rt_hit_ray), an array of RtCrossing; NULL: for box tests only. */
+ * that plugins test boxes and objects by the same code. `crossings` is the memory of hit functions, an
+ * RtHitMemory; NULL: for box tests only. */
 typedef raytally_prepared RtPreparedRay;
 
 static inline bool rt_ray_is_valid(const RtRay *ray) {
@@ -132,12 +132,12 @@ static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
 }
 
 /* Prepares *p. `scene_box` must contain every box that the ray will be tested against; it sets the
- * thickness. `crossings` is for hit functions; NULL if none will be called (rt_hit_ray in
+ * thickness. `hit_memory` is for hit functions; NULL if none will be called (rt_hit_ray in
  * core/shape/geometry.h). */
 static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const RtBox *scene_box,
-                                     struct RtCrossing *crossings) {
+                                     struct RtHitMemory *hit_memory) {
     raytally_prepare_in(p, (const raytally_ray *)ray, rt_public_box(scene_box));
-    p->crossings = crossings;
+    p->crossings = hit_memory;
 }
 
 /* The same for box tests only. */

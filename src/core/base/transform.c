@@ -80,6 +80,43 @@ RtVec3 rt_transform_point(const RtTransform *transform, RtVec3 point) {
     return rt_narrow(rt_transform_pointd(transform, rt_widen(point)));
 }
 
+RtVec3d rt_transform_vectord(const RtTransform *transform, RtVec3d vector) {
+    RtVec3d moved;
+    for (int row = 0; row < 3; row++) {
+        const double *m = transform->m[row];
+        moved.at[row] = m[0] * vector.x + m[1] * vector.y + m[2] * vector.z;
+    }
+    return moved;
+}
+
+/* The largest column sum of a matrix: at most sqrt(3) times, and at least 1 / sqrt(3) of, the factor by which
+ * it stretches vectors at most. */
+static double stretch(const RtTransform *t) {
+    double most = 0;
+    for (int column = 0; column < 3; column++)
+        most = fmax(most, fabs(t->m[0][column]) + fabs(t->m[1][column]) + fabs(t->m[2][column]));
+    return most;
+}
+
+RtStatus rt_transform_invert(const RtTransform *transform, RtTransform *inverse, RtError *error) {
+    const RtVec3d x = rt_transform_column(transform, 0), y = rt_transform_column(transform, 1),
+                  z = rt_transform_column(transform, 2), at = rt_transform_column(transform, 3);
+    const RtVec3d rows[3] = {rt_crossd(y, z), rt_crossd(z, x), rt_crossd(x, y)};
+    const double determinant = rt_dotd(x, rows[0]);
+    for (int row = 0; row < 3; row++) {
+        for (int column = 0; column < 3; column++) inverse->m[row][column] = rows[row].at[column] / determinant;
+        inverse->m[row][3] = -rt_dotd(rows[row], at) / determinant;
+    }
+    const double most = stretch(transform), least = 1 / stretch(inverse);
+    if (determinant > 0 && most <= RT_MAX_STRETCH && least >= 1 / RT_MAX_STRETCH &&
+        most <= least * RT_MAX_STRETCH && isfinite(rt_lengthd(rt_transform_column(inverse, 3))))
+        return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "the matrix of an instance scales by factors from %.3g to %.3g%s: between 1e-6 and 1e6, at "
+                   "most a factor of 1e6 apart, and no mirror, can be undone",
+                   least, most, determinant < 0 ? " and mirrors" : "");
+}
+
 RtVec3d rt_transform_normald(const RtTransform *transform, RtVec3d normal) {
     RtVec3d x = rt_transform_column(transform, 0), y = rt_transform_column(transform, 1),
             z = rt_transform_column(transform, 2);

@@ -40,6 +40,15 @@ RtStatus rt_transform_translate(RtTransform *transform, RtVec3 by, RtError *erro
 RtVec3d rt_transform_pointd(const RtTransform *transform, RtVec3d point);
 RtVec3 rt_transform_point(const RtTransform *transform, RtVec3 point);
 
+/* Transforms a vector, which a translation does not change. */
+RtVec3d rt_transform_vectord(const RtTransform *transform, RtVec3d vector);
+
+/* *inverse undoes *transform, up to rounding. Rejects what would leave too few digits: a determinant not above
+ * 0 (mirrors are not supported), and lengths that grow by factors more than RT_MAX_STRETCH apart in different
+ * directions, or by more than that in any. */
+#define RT_MAX_STRETCH 1e6
+RtStatus rt_transform_invert(const RtTransform *transform, RtTransform *inverse, RtError *error);
+
 /* Transforms a normal by the cofactor matrix; rt_transform_normald does not normalise. A zero vector stays
  * zero. */
 RtVec3d rt_transform_normald(const RtTransform *transform, RtVec3d normal);

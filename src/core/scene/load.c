@@ -125,8 +125,18 @@ RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtVec3d *off
     return load(path, open_named, offset ? *offset : none, true, scene, error);
 }
 
+/* No format has instances: they are written as copies. */
+static RtStatus save_flat(const RtScene *scene, const char *path, RtError *error) {
+    RtScene flat;
+    RT_TRY(rt_scene_flatten(scene, &flat, error));
+    const RtStatus status = rt_scene_save(&flat, path, error);
+    rt_scene_clear(&flat);
+    return status;
+}
+
 RtStatus rt_scene_save(const RtScene *scene, const char *path, RtError *error) {
     size_t format;
+    if (scene->geometry.instance_count > 0) return save_flat(scene, path, error);
     RT_TRY(rt_find_format(path, written_extension, "written", &format, error));
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));

@@ -95,7 +95,7 @@ RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, R
 
 /* Stores the material of the next object, before the object is added. */
 static RtStatus reserve_material_of(RtScene *scene, uint32_t material, RtError *error) {
-    assert(material < scene->material_count);
+    assert(material < scene->material_count || material == RT_OWN_MATERIALS);
     RT_TRY(rt_reserve(&scene->material_of, &scene->material_of_capacity,
                       (uint64_t)scene->geometry.object_count + 1, sizeof(uint32_t), error));
     scene->material_of[scene->geometry.object_count] = material;
@@ -123,6 +123,30 @@ RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float
                            float apex_radius, RtError *error) {
     RT_TRY(reserve_material_of(scene, material, error));
     return rt_geometry_add_cone(&scene->geometry, base, base_radius, apex, apex_radius, error);
+}
+
+RtStatus rt_scene_add_instance(RtScene *to, const RtScene *of, uint32_t part, const RtTransform *to_world,
+                               uint32_t material, RtError *error) {
+    RT_TRY(reserve_material_of(to, material, error));
+    return rt_geometry_add_instance(&to->geometry, &of->parts[part]->geometry, part, to_world, error);
+}
+
+void rt_scene_place(const RtScene *scene, uint32_t id, const RtRay *ray, RtPlace *place) {
+    *place = (RtPlace){.scene = scene, .object = id, .to_world = rt_transform_identity(), .ray = *ray};
+    for (;;) {
+        const RtGeometry *g = &place->scene->geometry;
+        const uint32_t object = rt_geometry_holder(g, place->object);
+        if (!rt_is_instance(g, object)) return;
+        const RtInstance *instance = &g->instances[rt_ref_index(g->objects[object])];
+        const uint32_t material = place->scene->material_of[object];
+        if (!place->material && material != RT_OWN_MATERIALS)
+            place->material = &place->scene->materials[material];
+        const RtRay outside = place->ray;
+        rt_instance_enter(instance, &outside, &place->ray);
+        place->to_world = rt_transform_compose(&instance->to_world, &place->to_world);
+        place->object -= instance->first;
+        place->scene = scene->parts[instance->part];
+    }
 }
 
 RtStatus rt_scene_set_triangle_texture(RtScene *scene, const RtUv at[3], RtError *error) {
@@ -200,13 +224,33 @@ static void place_camera(RtCamera *camera, const RtBox *box) {
     camera->from = within_bounds(rt_add_scaledd(center, rt_normalized(towards), distance));
 }
 
-RtStatus rt_scene_finish(RtScene *scene, RtError *error) {
+/* Computes the boxes. */
+static RtStatus finish_objects(RtScene *scene, RtError *error) {
     rt_trim(&scene->material_of, scene->geometry.object_count, &scene->material_of_capacity,
             sizeof(uint32_t));
     if (scene->triangle_textures)
         rt_trim(&scene->triangle_textures, scene->triangle_texture_count, &scene->triangle_texture_capacity,
                 sizeof(RtTriangleTexture));
-    RT_TRY(rt_geometry_finish(&scene->geometry, error));
+    return rt_geometry_finish(&scene->geometry, error);
+}
+
+RtStatus rt_scene_add_part(RtScene *scene, RtScene *part, RtError *error) {
+    RtScene *kept = rt_alloc(1, sizeof *kept);
+    RtStatus status = kept ? finish_objects(part, error) : rt_fail_memory(error, "a part", sizeof *kept);
+    if (status == RT_OK)
+        status = rt_append(&scene->parts, &scene->part_count, &scene->part_capacity, &kept, sizeof kept, error);
+    if (status == RT_OK) {
+        *kept = *part;
+        *part = (RtScene){0};
+        return RT_OK;
+    }
+    rt_scene_clear(part);
+    rt_free(kept);
+    return status;
+}
+
+RtStatus rt_scene_finish(RtScene *scene, RtError *error) {
+    RT_TRY(finish_objects(scene, error));
     RtCamera *camera = &scene->camera;
     const RtVec3 from = camera->from, at = camera->at;
     if (from.x == at.x && from.y == at.y && from.z == at.z) place_camera(camera, &scene->geometry.box);
@@ -229,9 +273,11 @@ RtStatus rt_scene_sample(RtScene *scene, uint32_t width, uint32_t height, uint32
 
 typedef struct Append {
     RtScene *to;
+    const RtScene *of;            /* that owns the parts */
     const RtScene *from;
     const RtTransform *transform; /* or NULL */
     double scale;                 /* the uniform scale, 0 if uneven */
+    uint32_t painted;             /* index in `to` of the material of all objects, or RT_OWN_MATERIALS */
     uint32_t *materials;          /* [from->material_count] index in `to` */
     RtVec3 *vertices;             /* [from->geometry.polygon_vertex_count] moved */
     bool textures;                /* keep them */
@@ -278,21 +324,35 @@ static RtStatus append_triangle(const Append *a, uint32_t material, uint32_t ind
     return texture ? rt_scene_set_triangle_texture(a->to, texture->at, a->error) : RT_OK;
 }
 
+static RtStatus append_all(RtScene *to, const RtScene *of, const RtScene *from, const RtTransform *transform,
+                           uint32_t painted, RtError *error);
+
 static RtStatus append_csg(const Append *a, const RtCsg *tree) {
     RtCsgBuilder builder = {0};
     RtCsgTerm root = 0;
     RtStatus status = rt_csg_recover(&builder, &a->from->geometry.forest, tree, &root, a->error);
-    for (uint32_t i = 0; i < builder.set.solid_count && status == RT_OK; i++)
-        builder.set.solids[i].material = a->materials[builder.set.solids[i].material];
+    for (uint32_t i = 0; i < builder.set.solid_count && status == RT_OK; i++) {
+        const uint32_t own = a->materials[builder.set.solids[i].material];
+        builder.set.solids[i].material = a->painted == RT_OWN_MATERIALS ? own : a->painted;
+    }
     if (status == RT_OK && a->transform) status = rt_csg_move(&builder, root, a->transform, &root, a->error);
     if (status == RT_OK) status = rt_scene_add_csg(a->to, &builder, root, tree->extents, a->error);
     rt_csg_builder_clear(&builder);
     return status;
 }
 
+static RtStatus append_instance(const Append *a, uint32_t painted, const RtInstance *instance) {
+    const RtScene *part = a->of->parts[instance->part];
+    RtTransform moved = instance->to_world;
+    if (a->transform) moved = rt_transform_compose(&moved, a->transform);
+    return append_all(a->to, a->of, part, &moved, painted, a->error);
+}
+
 static RtStatus append_object(const Append *a, uint32_t id) {
     const RtGeometry *g = &a->from->geometry;
-    uint32_t index = rt_ref_index(g->objects[id]), material = a->materials[a->from->material_of[id]];
+    const uint32_t index = rt_ref_index(g->objects[id]), own = a->from->material_of[id];
+    const bool paints = a->painted == RT_OWN_MATERIALS && own != RT_OWN_MATERIALS;
+    const uint32_t material = paints ? a->materials[own] : a->painted;
     switch (rt_ref_shape(g->objects[id])) {
     case RT_SHAPE_SPHERE: return append_sphere(a, material, &g->spheres[index]);
     case RT_SHAPE_POLYGON:
@@ -301,6 +361,7 @@ static RtStatus append_object(const Append *a, uint32_t id) {
     case RT_SHAPE_TRIANGLE: return append_triangle(a, material, index);
     case RT_SHAPE_CONE: return append_cone(a, material, &g->cones[index]);
     case RT_SHAPE_CSG: return append_csg(a, &g->csgs[index]);
+    case RT_SHAPE_INSTANCE: return append_instance(a, material, &g->instances[index]);
     case RT_SHAPE_COUNT: break;
     }
     return RT_OK;
@@ -322,12 +383,14 @@ static RtStatus append_materials(const Append *a) {
 }
 
 /* The objects ids[0..count), or with NULL the first `count`, and textures. */
-static RtStatus append(RtScene *to, const RtScene *from, const uint32_t *ids, uint32_t count,
-                       const RtTransform *transform, RtError *error) {
+static RtStatus append(RtScene *to, const RtScene *of, const RtScene *from, const uint32_t *ids,
+                       uint32_t count, const RtTransform *transform, uint32_t painted, RtError *error) {
     RT_ARENA(memory);
     const RtGeometry *g = &from->geometry;
     const Append a = {.to = to,
+                      .of = of,
                       .from = from,
+                      .painted = painted,
                       .transform = transform,
                       .scale = transform ? rt_transform_uniform_scale(transform) : 1,
                       .materials = rt_arena_alloc(&memory, from->material_count, sizeof(uint32_t)),
@@ -342,8 +405,13 @@ static RtStatus append(RtScene *to, const RtScene *from, const uint32_t *ids, ui
     return RT_OK;
 }
 
+static RtStatus append_all(RtScene *to, const RtScene *of, const RtScene *from, const RtTransform *transform,
+                           uint32_t painted, RtError *error) {
+    return append(to, of, from, NULL, from->geometry.object_count, transform, painted, error);
+}
+
 RtStatus rt_scene_append(RtScene *to, const RtScene *from, const RtTransform *transform, RtError *error) {
-    return append(to, from, NULL, from->geometry.object_count, transform, error);
+    return append_all(to, from, from, transform, RT_OWN_MATERIALS, error);
 }
 
 static RtStatus fill_subset(RtScene *to, const RtScene *from, const uint32_t *ids, uint32_t count,
@@ -353,7 +421,7 @@ static RtStatus fill_subset(RtScene *to, const RtScene *from, const uint32_t *id
     to->camera = from->camera;
     for (uint32_t i = 0; i < from->light_count; i++)
         RT_TRY(rt_scene_add_light(to, from->lights[i].position, from->lights[i].intensity, error));
-    RT_TRY(append(to, from, ids, count, NULL, error));
+    RT_TRY(append(to, from, from, ids, count, NULL, RT_OWN_MATERIALS, error));
     RT_TRY(rt_scene_finish(to, error));
     to->sampling = from->sampling;
     return RT_OK;
@@ -366,6 +434,10 @@ RtStatus rt_scene_subset(const RtScene *from, const uint32_t *ids, uint32_t coun
     RtStatus status = fill_subset(to, from, ids, count, error);
     if (status != RT_OK) rt_scene_clear(to);
     return status;
+}
+
+RtStatus rt_scene_flatten(const RtScene *from, RtScene *to, RtError *error) {
+    return rt_scene_subset(from, NULL, from->geometry.object_count, to, error);
 }
 
 /* ---- the fingerprint ---- */
@@ -433,6 +505,14 @@ uint64_t rt_scene_fingerprint(const RtScene *scene) {
     bool some = g->vertex_normal_count > 0 && g->vertex_normal_count < g->triangle_count;
     if (some) ADD(g->triangle_normals, g->triangle_count);
     ADD(scene->triangle_textures, scene->triangle_texture_count);
+    for (uint32_t i = 0; i < g->instance_count; i++) {
+        ADD(&g->instances[i].to_world, 1);
+        ADD(&g->instances[i].part, 1);
+    }
+    for (uint32_t i = 0; i < scene->part_count; i++) {
+        const uint64_t part = rt_scene_fingerprint(scene->parts[i]);
+        ADD(&part, 1);
+    }
     for (uint32_t i = 0; i < scene->material_count; i++) { /* all but the name */
         XXH3_64bits_update(state, &scene->materials[i].color,
                            offsetof(RtMaterial, texture) - offsetof(RtMaterial, color));
@@ -447,12 +527,13 @@ uint64_t rt_scene_fingerprint(const RtScene *scene) {
 #undef ADD
 
 uint64_t rt_scene_bytes(const RtScene *scene) {
-    uint64_t texels = 0;
+    uint64_t below = 0;
+    for (uint32_t i = 0; i < scene->part_count; i++) below += rt_scene_bytes(scene->parts[i]);
     for (uint32_t i = 0; i < scene->material_count; i++) {
         const RtTexels *image = scene->materials[i].texture.texels;
-        if (image) texels += 3 * (uint64_t)image->width * image->height;
+        if (image) below += 3 * (uint64_t)image->width * image->height;
     }
-    return texels + (uint64_t)scene->triangle_texture_capacity * sizeof(RtTriangleTexture) +
+    return below + (uint64_t)scene->triangle_texture_capacity * sizeof(RtTriangleTexture) +
            rt_geometry_bytes(&scene->geometry) + (uint64_t)scene->material_of_capacity * sizeof(uint32_t) +
            (uint64_t)scene->material_capacity * sizeof(RtMaterial) +
            (uint64_t)scene->light_capacity * sizeof(RtLight);
@@ -462,6 +543,11 @@ void rt_scene_clear(RtScene *scene) {
     rt_geometry_clear(&scene->geometry);
     for (uint32_t i = 0; i < scene->material_count; i++)
         rt_texels_release(scene->materials[i].texture.texels);
+    for (uint32_t i = 0; i < scene->part_count; i++) {
+        rt_scene_clear(scene->parts[i]);
+        rt_free(scene->parts[i]);
+    }
+    rt_free(scene->parts);
     rt_free(scene->material_of);
     rt_free(scene->materials);
     rt_free(scene->triangle_textures);

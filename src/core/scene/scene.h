@@ -48,11 +48,14 @@ typedef struct RtTriangleTexture {
     RtUv at[3];
 } RtTriangleTexture;
 
-typedef struct RtScene {
+typedef struct RtScene RtScene;
+
+struct RtScene {
     char name[RT_MAX_SCENE_NAME];
     RtGeometry geometry;
     uint32_t material_of_capacity;
-    uint32_t *material_of; /* [geometry.object_count] index into materials; a tree's solids have their own */
+    uint32_t *material_of; /* [geometry.object_count] index into materials; a tree's solids have their own; of
+                            * an instance: RT_OWN_MATERIALS, or the one that its part is painted with */
     uint32_t material_count, material_capacity;
     RtMaterial *materials;
     uint32_t triangle_texture_count, triangle_texture_capacity;
@@ -65,7 +68,11 @@ typedef struct RtScene {
     RtSampling sampling; /* of the camera's image: defines the primary rays */
     RtWarnings warnings; /* about the files it was read from */
     RtVec3d offset;      /* readers subtract it from each position, in double, before they round to float32 */
-} RtScene;
+    uint32_t part_count, part_capacity;
+    RtScene **parts; /* [part_count] owned, finished: objects and materials that instances place; none in parts */
+};
+
+#define RT_OWN_MATERIALS UINT32_MAX
 
 /* Opens the scene named `spec` and finishes it; on failure *scene is empty. */
 typedef RtStatus RtSceneOpener(const char *spec, RtScene *scene, RtError *error);
@@ -107,6 +114,29 @@ RtStatus rt_scene_add_csg(RtScene *scene, const RtCsgBuilder *builder, RtCsgTerm
                           RtError *error);
 /* Sets the material of all solids of the tree added last. */
 void rt_scene_paint_csg(RtScene *scene, uint32_t material);
+
+/* Finishes `part`, a scene without parts of its own, and moves it into *scene, as the next of its parts;
+ * `part` is empty afterwards, also after a failure. */
+RtStatus rt_scene_add_part(RtScene *scene, RtScene *part, RtError *error);
+
+/* Adds an instance of parts[part] of the scene `of` to `to`, which is that scene or will be one of its later
+ * parts (rt_geometry_add_instance). `material`: of `to`, or RT_OWN_MATERIALS. */
+RtStatus rt_scene_add_instance(RtScene *to, const RtScene *of, uint32_t part, const RtTransform *to_world,
+                               uint32_t material, RtError *error);
+
+/* Where the object with an id is: in the scene itself, or in a part. */
+typedef struct RtPlace {
+    const RtScene *scene;
+    uint32_t object;            /* its id there */
+    const RtMaterial *material; /* that it is painted with, instead of its own; NULL: none */
+    RtTransform to_world;       /* if it is in a part */
+    RtRay ray;                  /* moved there */
+} RtPlace;
+void rt_scene_place(const RtScene *scene, uint32_t id, const RtRay *ray, RtPlace *place);
+
+/* Creates a finished scene without instances, with a copy of each object in the order of ids, so that hits
+ * name the same ones. Copies are moved in double and rounded to float32. */
+RtStatus rt_scene_flatten(const RtScene *from, RtScene *to, RtError *error);
 
 /* Computes the boxes. If no camera was given (from = at), places one that sees the whole scene; if there
  * is no light, places one beside the camera. The sampling becomes one sample at each pixel's centre. */

@@ -29,7 +29,9 @@ typedef struct Names {
 typedef struct Reader {
     RtYaml yaml;
     RtSceneOpener *open_named;
-    RtScene *scene;
+    RtScene *scene;       /* that objects are added to: `whole`, or a part of it */
+    RtScene *whole;
+    Names parts;          /* entry i is part i of the scene */
     Names materials;      /* entry i is material i of the scene */
     uint32_t standard;    /* index of the default material; UINT32_MAX until it is needed */
     RtCsgBuilder builder; /* holds the solids */
@@ -612,6 +614,96 @@ static RtStatus add_object(Reader *r, const RtYamlNode *entry) {
     return RT_OK;
 }
 
+/* ---- parts and instances ---- */
+
+static RtStatus find_part(Reader *r, const RtYamlNode *entry, uint32_t *part) {
+    const char *name = "", *known[64];
+    uint32_t count = 0;
+    RT_TRY(rt_yaml_text(&r->yaml, entry, "part", RT_MAX_NAME - 1, &name));
+    const Named *found = find_name(&r->parts, name);
+    if (found && found->index < r->whole->part_count) {
+        *part = found->index;
+        return RT_OK;
+    }
+    const RtYamlNode *at = rt_yaml_get(&r->yaml, entry, "part");
+    if (found)
+        return rt_yaml_fail(&r->yaml, at, "the part '%s' is not complete here: a part contains earlier parts only",
+                            name);
+    for (uint32_t i = 0; i < r->parts.count && count < 64; i++) known[count++] = r->parts.all[i].name;
+    char suggestion[RT_MAX_SUGGESTION];
+    rt_suggest(name, known, count, suggestion);
+    return rt_yaml_fail(&r->yaml, at, "there is no part '%s'%s%s", name, suggestion,
+                        *suggestion ? "" : ": add it to the list of parts");
+}
+
+static RtStatus add_instance(Reader *r, const RtYamlNode *entry) {
+    const RtYaml *y = &r->yaml;
+    uint32_t part = 0, material = RT_OWN_MATERIALS;
+    RtTransform transform;
+    const RtTransform *given;
+    RT_TRY(rt_yaml_keys(y, entry, "part transform? place? material?"));
+    RT_TRY(find_part(r, entry, &part));
+    if (rt_yaml_get(y, entry, "material")) RT_TRY(find_material(r, entry, &material));
+    const RtYamlNode *place = rt_yaml_get(y, entry, "place");
+    if (place && rt_yaml_get(y, entry, "transform"))
+        return rt_yaml_fail(y, place, "`place`, a matrix, and `transform`, a list of steps, say the same: give one");
+    RT_TRY(read_transform(r, entry, r->scene->offset, &transform, &given));
+    if (place) RT_TRY(rt_yaml_doubles(y, entry, "place", 12, &transform.m[0][0]));
+    for (int a = 0; a < 3 && place; a++) transform.m[a][3] -= r->scene->offset.at[a];
+    RtStatus status = rt_scene_add_instance(r->scene, r->whole, part, &transform, material, r->error);
+    return rt_yaml_place(y, status, entry, NULL);
+}
+
+/* The objects and instances of the scene, or of a part. */
+static RtStatus add_content(Reader *r, const RtYamlNode *from) {
+    const RtYamlNode *objects = rt_yaml_get(&r->yaml, from, "objects"),
+                     *instances = rt_yaml_get(&r->yaml, from, "instances");
+    r->yaml.offset = r->scene->offset;
+    if (!objects && !instances)
+        return rt_yaml_fail(&r->yaml, from, "`objects` or `instances` are missing: there is nothing to see");
+    RT_TRY(rt_yaml_list(&r->yaml, objects, NULL, instances ? 0 : 1, UINT32_MAX, "objects"));
+    RT_TRY(rt_yaml_list(&r->yaml, instances, NULL, 0, UINT32_MAX, "instances"));
+    for (const RtYamlNode *n = rt_yaml_first(objects); n != rt_yaml_end(objects); n += n->size)
+        RT_TRY(add_object(r, n));
+    for (const RtYamlNode *n = rt_yaml_first(instances); n != rt_yaml_end(instances); n += n->size)
+        RT_TRY(add_instance(r, n));
+    return RT_OK;
+}
+
+static RtStatus read_part(Reader *r, const RtYamlNode *entry, RtScene *part) {
+    uint32_t same;
+    const char *name = "";
+    RT_TRY(rt_yaml_text(&r->yaml, entry, "name", RT_MAX_NAME - 1, &name));
+    memcpy(part->name, name, strlen(name) + 1);
+    part->warnings = r->whole->warnings; /* lent */
+    r->scene = part;
+    RtStatus status = RT_OK;
+    for (uint32_t i = 0; i < r->whole->material_count && status == RT_OK; i++)
+        status = rt_scene_add_material(part, &r->whole->materials[i], &same, r->error);
+    if (status == RT_OK) status = add_content(r, entry);
+    r->scene = r->whole;
+    r->whole->warnings = part->warnings;
+    part->warnings = (RtWarnings){0};
+    return status;
+}
+
+/* A part has the materials of the list at the same indices. */
+static RtStatus add_parts(Reader *r, const RtYamlNode *list) {
+    RT_TRY(read_names(r, list, "name objects? instances?", RT_MAX_NAME - 1, "parts", &r->parts));
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+        RtScene part = {0};
+        const uint32_t standard = r->standard;
+        RtStatus status = read_part(r, n, &part);
+        r->standard = standard;
+        if (status != RT_OK) {
+            rt_scene_clear(&part);
+            return status;
+        }
+        RT_TRY(rt_scene_add_part(r->whole, &part, r->error));
+    }
+    return RT_OK;
+}
+
 /* ---- camera, light ---- */
 
 static bool is_far(RtVec3 p) {
@@ -691,8 +783,8 @@ static RtStatus build(Reader *r) {
     const RtYaml *y = &r->yaml;
     const RtYamlNode *root = y->nodes;
     RT_TRY(rt_yaml_check_format(y));
-    RT_TRY(rt_yaml_keys(y, root, "camera? background? ambient? lights? materials? solids? objects format?"));
-    const RtYamlNode *camera = rt_yaml_get(y, root, "camera"), *objects = rt_yaml_get(y, root, "objects");
+    RT_TRY(rt_yaml_keys(y, root, "camera? background? ambient? lights? materials? solids? parts? objects? instances? format?"));
+    const RtYamlNode *camera = rt_yaml_get(y, root, "camera");
     r->yaml.offset = r->scene->offset;
     if (camera) RT_TRY(set_camera(r, camera));
     RT_TRY(set_color(r, root, "background", &r->scene->background));
@@ -700,11 +792,8 @@ static RtStatus build(Reader *r) {
     RT_TRY(add_lights(r, rt_yaml_get(y, root, "lights")));
     RT_TRY(add_materials(r, rt_yaml_get(y, root, "materials")));
     RT_TRY(add_solids(r, rt_yaml_get(y, root, "solids")));
-    r->yaml.offset = r->scene->offset;
-    RT_TRY(rt_yaml_list(y, objects, NULL, 1, UINT32_MAX, "objects"));
-    for (const RtYamlNode *n = rt_yaml_first(objects); n != rt_yaml_end(objects); n += n->size)
-        RT_TRY(add_object(r, n));
-    return RT_OK;
+    RT_TRY(add_parts(r, rt_yaml_get(y, root, "parts")));
+    return add_content(r, root);
 }
 
 /* Builds the scene from the open file, and closes it. */
@@ -717,14 +806,14 @@ static RtStatus load(Reader *r) {
 }
 
 RtStatus rt_yaml_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
-    Reader r = {.open_named = open_named, .scene = scene, .standard = UINT32_MAX, .error = error};
+    Reader r = {.open_named = open_named, .scene = scene, .whole = scene, .standard = UINT32_MAX, .error = error};
     RT_TRY(rt_yaml_open(&r.yaml, path, error));
     return load(&r);
 }
 
 RtStatus rt_yaml_load_text(const char *name, const char *text, RtSceneOpener *open_named, RtScene *scene,
                            RtError *error) {
-    Reader r = {.open_named = open_named, .scene = scene, .standard = UINT32_MAX, .error = error};
+    Reader r = {.open_named = open_named, .scene = scene, .whole = scene, .standard = UINT32_MAX, .error = error};
     RT_TRY(rt_yaml_parse(&r.yaml, name, text, strlen(text), error));
     return load(&r);
 }

@@ -194,6 +194,7 @@ static RtStatus write_shape(Writer *w, RtShape shape, uint32_t index, RtError *e
         number_key(w, ", apex_radius: ", g->cones[index].apex_radius);
         break;
     case RT_SHAPE_CSG: return write_csg(w, &g->csgs[index], error);
+    case RT_SHAPE_INSTANCE: /* flattened earlier */
     case RT_SHAPE_COUNT: break;
     }
     return RT_OK;

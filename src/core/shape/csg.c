@@ -116,7 +116,7 @@ INLINE void run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, const 
     const RtCsgInstruction *program = forest->instructions + tree->first;
     float enter;
     assert(ray->thick.crossings);
-    m->crossings = ray->thick.crossings;
+    m->crossings = ((RtHitMemory *)ray->thick.crossings)->crossings;
     m->capacity = tree->most_crossings;
     m->depth = 0;
     m->starts[0] = m->starts[1] = 0; /* also the result of a program without instructions */

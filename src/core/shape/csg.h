@@ -131,15 +131,21 @@ RtStatus rt_csg_recover(RtCsgBuilder *builder, const RtCsgForest *from, const Rt
 
 /* ---- rays ---- */
 
+/* The memory of hit functions (rt_hit_memory_alloc). */
+typedef struct RtHitMemory {
+    struct RtQuery *parts;  /* a query in each part of the scene, for instances (accel/instance.c) */
+    RtCrossing crossings[]; /* of a ray with the largest CSG tree */
+} RtHitMemory;
+
 /* The first crossing of the tree with t in [tmin, tmax] and within its box; false if there is none.
  * `tally` may be NULL: csg_tests counts the solids tested, extent_tests their boxes and those of inner
- * nodes. ray->crossings must hold tree->most_crossings crossings: nothing is allocated. */
+ * nodes. The ray's RtHitMemory must hold tree->most_crossings crossings: nothing is allocated. */
 bool rt_csg_hit(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRay *ray, float *t,
                 RtTally *tally);
 
 /* The surface that the ray meets at `t`, one of its hits: unit normal out of the tree, and the solid. For
  * any other `t`, the nearest place on the ray's line; if there is none, the normal is 0 and the solid the
- * tree's first. ray->crossings as above. */
+ * tree's first. Memory as above. */
 typedef struct RtCsgFacet {
     RtVec3d normal;
     uint32_t solid; /* index in the set */

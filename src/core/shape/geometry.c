@@ -36,7 +36,9 @@ static RtStatus check_radius(float radius, RtError *error) {
 }
 
 /* Makes space for one more entry in the table of objects. */
-static RtStatus reserve_object(RtGeometry *g, RtError *error) {
+static RtStatus reserve_object(RtGeometry *g, RtShape shape, RtError *error) {
+    if (g->instance_count > 0 && shape != RT_SHAPE_INSTANCE)
+        return rt_fail(error, RT_BAD_INPUT, "instances come after all other objects");
     if (g->object_count >= RT_MAX_OBJECTS)
         return rt_fail(error, RT_BAD_INPUT, "a scene holds at most %u objects", RT_MAX_OBJECTS);
     return rt_reserve(&g->objects, &g->object_capacity, (uint64_t)g->object_count + 1, sizeof(RtRef), error);
@@ -47,7 +49,7 @@ static RtStatus reserve_object(RtGeometry *g, RtError *error) {
 #define DEFINE_APPEND(CONSTANT, name, Type)                                                                  \
     static RtStatus reserve_##name(RtGeometry *g, RtError *error) {                                          \
         uint64_t needed = (uint64_t)g->name##_count + 1;                                                     \
-        RT_TRY(reserve_object(g, error));                                                                    \
+        RT_TRY(reserve_object(g, RT_SHAPE_##CONSTANT, error));                                                                    \
         RT_TRY(rt_reserve(&g->name##s, &g->name##_capacity, needed, sizeof(Type), error));                   \
         return rt_reserve(&g->name##_ids, &g->name##_id_capacity, needed, sizeof(uint32_t), error);          \
     }                                                                                                        \
@@ -172,6 +174,54 @@ RtStatus rt_geometry_add_csg(RtGeometry *geometry, const RtCsgBuilder *builder, 
     return append_csg(geometry, &tree, error);
 }
 
+uint32_t rt_geometry_id_count(const RtGeometry *geometry) {
+    if (geometry->instance_count == 0) return geometry->object_count;
+    const RtInstance *last = &geometry->instances[geometry->instance_count - 1];
+    return last->first + rt_geometry_id_count(last->geometry);
+}
+
+uint32_t rt_geometry_holder(const RtGeometry *geometry, uint32_t id) {
+    uint32_t plain = geometry->object_count - geometry->instance_count, low = 0, high = geometry->instance_count;
+    if (id < plain) return id;
+    while (high - low > 1) { /* the last that begins at or before it */
+        const uint32_t middle = low + (high - low) / 2;
+        if (geometry->instances[middle].first <= id)
+            low = middle;
+        else
+            high = middle;
+    }
+    return plain + low;
+}
+
+/* Of a ray with the largest CSG tree of a geometry and its parts. */
+static uint32_t most_crossings(const RtGeometry *geometry) {
+    uint32_t most = geometry->part_crossings;
+    for (uint32_t i = 0; i < geometry->csg_count; i++) {
+        if (geometry->csgs[i].most_crossings > most) most = geometry->csgs[i].most_crossings;
+    }
+    return most;
+}
+
+RtStatus rt_geometry_add_instance(RtGeometry *geometry, const RtGeometry *part, uint32_t part_index,
+                                  const RtTransform *to_world, RtError *error) {
+    const uint64_t ids = (uint64_t)rt_geometry_id_count(geometry) + rt_geometry_id_count(part);
+    RtInstance instance = {.to_world = *to_world,
+                           .geometry = part,
+                           .part = part_index,
+                           .first = rt_geometry_id_count(geometry)};
+    assert(part->boxes);
+    if (ids > UINT32_MAX - 2)
+        return rt_fail(error, RT_BAD_INPUT, "the instances amount to more than 4e9 objects");
+    if (part->nesting >= RT_MAX_NESTING)
+        return rt_fail(error, RT_BAD_INPUT, "instances are nested in more than %d levels", RT_MAX_NESTING);
+    RT_TRY(rt_transform_invert(to_world, &instance.to_part, error));
+    RT_TRY(append_instance(geometry, &instance, error));
+    const uint32_t crossings = most_crossings(part);
+    if (part->nesting + 1 > geometry->nesting) geometry->nesting = part->nesting + 1;
+    if (crossings > geometry->part_crossings) geometry->part_crossings = crossings;
+    return RT_OK;
+}
+
 /* Makes triangle_normals as long as the array of triangles; new entries are RT_NO_NORMALS. */
 static RtStatus reserve_triangle_normals(RtGeometry *g, uint64_t needed, RtError *error) {
     uint32_t before = g->triangle_normal_capacity;
@@ -266,13 +316,12 @@ void rt_geometry_clear(RtGeometry *g) {
 
 /* ---- scratch memory of hit functions ---- */
 
-RtStatus rt_crossings_alloc(const RtGeometry *geometry, RtCrossing **crossings, RtError *error) {
-    uint32_t most = 0;
-    *crossings = NULL;
-    for (uint32_t i = 0; i < geometry->csg_count; i++) {
-        if (geometry->csgs[i].most_crossings > most) most = geometry->csgs[i].most_crossings;
-    }
-    if (geometry->csg_count > 0 && most < UINT32_MAX) *crossings = rt_alloc(most, sizeof(RtCrossing));
-    if (geometry->csg_count == 0 || *crossings) return RT_OK;
-    return rt_fail_memory(error, "the crossings of a ray with a CSG tree", most * sizeof(RtCrossing));
+RtStatus rt_hit_memory_alloc(const RtGeometry *geometry, RtHitMemory **hit_memory, RtError *error) {
+    const uint32_t most = most_crossings(geometry);
+    const uint64_t bytes = sizeof(RtHitMemory) + (uint64_t)most * sizeof(RtCrossing);
+    *hit_memory = NULL;
+    if (geometry->csg_count == 0 && geometry->instance_count == 0) return RT_OK;
+    if (most < UINT32_MAX) *hit_memory = rt_alloc(bytes, 1);
+    if (*hit_memory) return RT_OK;
+    return rt_fail_memory(error, "the crossings of a ray with a CSG tree", bytes);
 }

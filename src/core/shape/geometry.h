@@ -8,6 +8,7 @@
 #include "core/base/ray.h"
 #include "core/base/status.h"
 #include "core/shape/csg.h"
+#include "core/shape/instance.h"
 #include "core/shape/shape.h"
 
 /* X(CONSTANT, name, Type): `name` in the singular; the array is called name##s. */
@@ -16,7 +17,8 @@
     X(POLYGON, polygon, RtPolygon)                                                                           \
     X(TRIANGLE, triangle, RtTriangle)                                                                        \
     X(CONE, cone, RtCone)                                                                                    \
-    X(CSG, csg, RtCsg)
+    X(CSG, csg, RtCsg)                                                                                       \
+    X(INSTANCE, instance, RtInstance)
 
 typedef enum RtShape {
 #define RT_SHAPE_ENUM(CONSTANT, name, Type) RT_SHAPE_##CONSTANT,
@@ -74,6 +76,9 @@ typedef struct RtGeometry {
 
     RtCsgForest forest; /* the CSG trees' parts */
 
+    uint32_t nesting;        /* levels of instances */
+    uint32_t part_crossings; /* of the largest CSG tree in the parts of its instances */
+
     /* Made by rt_geometry_finish. */
     RtBox *boxes; /* [object_count] own box of each object */
     RtBox box;    /* union of all; empty for an empty geometry */
@@ -102,6 +107,22 @@ RtStatus rt_geometry_add_triangle(RtGeometry *geometry, const RtVec3 vertices[3]
 RtStatus rt_geometry_add_csg(RtGeometry *geometry, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
                              RtError *error);
 
+/* Adds an instance of a part, which must be finished and outlive the geometry; after it, only instances may
+ * be added. Rejects a matrix that rounding would spoil (rt_transform_invert), and too many objects or levels.
+ */
+RtStatus rt_geometry_add_instance(RtGeometry *geometry, const RtGeometry *part, uint32_t part_index,
+                                  const RtTransform *to_world, RtError *error);
+
+/* Objects in the flattened order; object_count counts an instance as one. */
+uint32_t rt_geometry_id_count(const RtGeometry *geometry);
+
+/* The object 0..object_count-1 that is, or contains, the one with this id. */
+uint32_t rt_geometry_holder(const RtGeometry *geometry, uint32_t id);
+
+static inline bool rt_is_instance(const RtGeometry *geometry, uint32_t object) {
+    return rt_ref_shape(geometry->objects[object]) == RT_SHAPE_INSTANCE;
+}
+
 /* Computes the boxes. Call it once, after the last object. */
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error);
 
@@ -110,27 +131,27 @@ void rt_geometry_clear(RtGeometry *geometry);
 
 #define RT_NO_SOLID UINT32_MAX
 
-/* Allocates the scratch memory of hit functions, for the crossings of a ray with the largest CSG tree; NULL
- * if there is no tree. It serves one thread at a time; free it with rt_free. */
-RtStatus rt_crossings_alloc(const RtGeometry *geometry, RtCrossing **crossings, RtError *error);
+/* Allocates the memory of hit functions; NULL if there are neither CSG trees nor instances. It serves one
+ * thread at a time; free it with rt_free. */
+RtStatus rt_hit_memory_alloc(const RtGeometry *geometry, RtHitMemory **hit_memory, RtError *error);
 
-/* Prepares *prepared for box tests and for the hit functions of this geometry; `crossings` is borrowed.
+/* Prepares *prepared for box tests and for the hit functions of this geometry; `hit_memory` is borrowed.
  * Returning the struct by value makes traversals many per cent slower. */
 static inline void rt_hit_ray(RtPreparedRay *prepared, const RtGeometry *geometry, const RtRay *ray,
-                              RtCrossing *crossings) {
-    rt_ray_prepare_in(prepared, ray, &geometry->box, crossings);
+                              RtHitMemory *hit_memory) {
+    rt_ray_prepare_in(prepared, ray, &geometry->box, hit_memory);
 }
 
 /* The surface of object `id` at `t`, one of the ray's hits: two unit normals, geometric (oriented by the
  * shape) and shading (interpolated if a triangle has vertex normals, otherwise the geometric one), and for
- * a CSG tree the solid that was hit (in geometry->forest), else RT_NO_SOLID. `crossings` comes from
- * rt_crossings_alloc. */
+ * a CSG tree the solid that was hit (in geometry->forest), else RT_NO_SOLID. `hit_memory` comes from
+ * rt_hit_memory_alloc. */
 typedef struct RtNormals {
     RtVec3d geometric, shading;
     uint32_t solid;
 } RtNormals;
 RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
-                            RtCrossing *crossings);
+                            RtHitMemory *hit_memory);
 
 /* Barycentric weights of v[0], v[1], v[2] at `point` in the plane of the triangle; they sum to 1. */
 RtVec3d rt_triangle_weights(const RtTriangle *triangle, RtVec3d point);
@@ -158,12 +179,13 @@ static __attribute__((noinline)) bool rt_rarer_hit(const RtGeometry *geometry, u
     case RT_SHAPE_CSG: return rt_csg_hit(&geometry->forest, &geometry->csgs[index], ray, t, tally);
     case RT_SHAPE_TRIANGLE:
     case RT_SHAPE_SPHERE:
+    case RT_SHAPE_INSTANCE:
     case RT_SHAPE_COUNT: break;
     }
     return false;
 }
 
-/* The hit function of every object: true if the ray (from rt_hit_ray) hits object `id` in [tmin, tmax]; *t
+/* The hit function of every object but instances (accel/instance.c): true if the ray (from rt_hit_ray) hits object `id` in [tmin, tmax]; *t
  * is the first hit. The result has the same bits for the same ray and object, whatever was found before.
  * `tally` may be NULL; it counts tests inside CSG trees. */
 static inline __attribute__((always_inline)) bool

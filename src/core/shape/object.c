@@ -199,6 +199,37 @@ static double csg_support(const RtGeometry *g, uint32_t index, RtVec3d direction
     return rt_csg_support(&g->forest, &g->csgs[index], direction);
 }
 
+/* The box of the part's box. */
+static RtBox instance_box(const RtGeometry *g, uint32_t index) {
+    const RtInstance *instance = &g->instances[index];
+    const RtBox *part = &instance->geometry->box;
+    RtBox box = RT_EMPTY_BOX;
+    for (int corner = 0; corner < 8 && !rt_box_is_empty(*part); corner++) {
+        RtVec3d at;
+        for (int a = 0; a < 3; a++) at.at[a] = (double)(corner >> a & 1 ? part->hi : part->lo).at[a];
+        at = rt_transform_pointd(&instance->to_world, at);
+        for (int a = 0; a < 3; a++) {
+            box.lo.at[a] = rt_minf(box.lo.at[a], rt_float_below(at.at[a]));
+            box.hi.at[a] = rt_maxf(box.hi.at[a], rt_float_above(at.at[a]));
+        }
+    }
+    return box;
+}
+
+static RtBall instance_ball(const RtGeometry *g, uint32_t index) {
+    const RtBox box = instance_box(g, index);
+    const RtVec3d center = rt_widen(rt_box_center(box));
+    return (RtBall){center, rt_lengthd(rt_subd(rt_widen(box.hi), center)) * (1 + 0x1p-20)};
+}
+
+static double instance_support(const RtGeometry *g, uint32_t index, RtVec3d direction) {
+    const RtBox box = instance_box(g, index);
+    double most = 0;
+    for (int a = 0; a < 3; a++)
+        most += (double)(direction.at[a] < 0 ? box.lo : box.hi).at[a] * direction.at[a];
+    return most;
+}
+
 static const struct {
     RtBox (*box)(const RtGeometry *g, uint32_t index);
     RtBall (*ball)(const RtGeometry *g, uint32_t index);
@@ -256,15 +287,15 @@ static RtVec3d interpolated_normal(const RtGeometry *g, uint32_t index, RtVec3d 
 }
 
 static RtNormals csg_normals(const RtGeometry *g, uint32_t index, const RtRay *ray, float t,
-                             RtCrossing *crossings) {
+                             RtHitMemory *hit_memory) {
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, g, ray, crossings);
+    rt_hit_ray(&prepared, g, ray, hit_memory);
     RtCsgFacet facet = rt_csg_facet(&g->forest, &g->csgs[index], &prepared, t);
     return (RtNormals){facet.normal, facet.normal, facet.solid};
 }
 
 RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
-                            RtCrossing *crossings) {
+                            RtHitMemory *hit_memory) {
     uint32_t index = rt_ref_index(geometry->objects[id]);
     RtVec3d point = rt_ray_point(ray, t), normal = {0, 0, 0};
     switch (rt_ref_shape(geometry->objects[id])) {
@@ -276,7 +307,8 @@ RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay
     case RT_SHAPE_TRIANGLE:
         normal = rt_triangle_normal(&geometry->triangles[index]);
         return (RtNormals){normal, interpolated_normal(geometry, index, point, normal), RT_NO_SOLID};
-    case RT_SHAPE_CSG: return csg_normals(geometry, index, ray, t, crossings);
+    case RT_SHAPE_CSG: return csg_normals(geometry, index, ray, t, hit_memory);
+    case RT_SHAPE_INSTANCE: /* rt_scene_place */
     case RT_SHAPE_COUNT: break;
     }
     return (RtNormals){normal, normal, RT_NO_SOLID};
@@ -333,6 +365,7 @@ void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]) {
     case RT_SHAPE_CONE: main = geometry->cones[index].axis; break;
     case RT_SHAPE_CSG: csg_axes(geometry, &geometry->csgs[index], &main, &normal); break;
     case RT_SHAPE_SPHERE:
+    case RT_SHAPE_INSTANCE:
     case RT_SHAPE_COUNT: break;
     }
     if (rt_dotd(main, main) == 0) main = rt_vec3d(1, 0, 0);

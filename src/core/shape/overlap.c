@@ -141,6 +141,7 @@ bool rt_outline_meets_box(const RtOutline *outline, const RtBox *box, double mar
     case RT_SHAPE_SPHERE: return sphere_meets(&geometry->spheres[index], &block);
     case RT_SHAPE_POLYGON:
         return polygon_meets(&geometry->polygons[index], rt_polygon_vertices(geometry, index), &block);
+    case RT_SHAPE_INSTANCE: return true;
     default: return frame_meets(outline, &block);
     }
 }
