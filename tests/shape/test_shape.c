@@ -168,7 +168,7 @@ RT_TEST(a_full_cone_is_hit_up_to_its_tip) {
 /* The hit of a ray that starts at `point`. */
 static RtNormals normals_at(const RtGeometry *g, uint32_t id, RtVec3d point) {
     RtRay ray = {.org = rt_narrow(point), .dir = {0, 0, 1}, .tmax = INFINITY};
-    return rt_object_normals(g, id, &ray, 0, crossings_of_tests());
+    return rt_object_normals(g, id, &ray, 0, hit_memory_of_tests());
 }
 
 static void assert_vector(RtVec3d a, double x, double y, double z) {
