@@ -188,10 +188,10 @@ RT_TEST(no_shortage_of_memory_becomes_a_verdict) {
 RT_TEST(no_shortage_of_memory_becomes_a_miss) {
     static const char crossings[] = "the crossings of a ray";
     OWNED(clear_row) Row row = make_balls();
-    assert_every_shortage_is_a_status(trace_frame, &row, hit_memory);
-    assert_every_shortage_is_a_status(build_item, &row, hit_memory);
-    assert_every_shortage_is_a_status(ask, &row, hit_memory);
-    assert_every_shortage_is_a_status(stack_of_overlays, &row, hit_memory);
+    assert_every_shortage_is_a_status(trace_frame, &row, crossings);
+    assert_every_shortage_is_a_status(build_item, &row, crossings);
+    assert_every_shortage_is_a_status(ask, &row, crossings);
+    assert_every_shortage_is_a_status(stack_of_overlays, &row, crossings);
 }
 
 RT_TESTS(csg_memory, NULL, assert_nothing_is_kept)
