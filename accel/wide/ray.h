@@ -67,6 +67,8 @@ typedef struct RaySource {
     uint32_t index[FILTER_BLOCK + RT_LANES]; /* [count], in the query; whole vectors are written */
 } RaySource;
 
+typedef struct RayState RayState;
+
 /* A stream of rays, and where the answers go. */
 typedef struct Query {
     const RtWide *self;
@@ -78,6 +80,7 @@ typedef struct Query {
     uint32_t *occluders; /* of `occluded` */
     RtTally *tallies;    /* of the counted kernels */
     RaySource *source;
+    RayState *states; /* [self->in_flight] */
 } Query;
 
 /* ---- lanes of rays ---- */
@@ -180,7 +183,7 @@ enum { RT_WIDE_STACK = RT_TREE_MAX_DEPTH * (RT_WIDE - 1) + 2 * RT_WIDE };
 /* Bytes from a plane of a node to the next, and from a coordinate of a block to the next. */
 enum { PLANE = RT_WIDE * sizeof(float), COORDINATE = RT_WIDE_BLOCK * sizeof(float) };
 
-typedef struct RayState {
+struct RayState {
     /* Arrays of four have an element more than axes, for vectors. */
     _Alignas(RT_CACHE_LINE) float inv[4]; /* this, and what follows, as in RtPreparedRay */
     float org_near[4], org_far[4];
@@ -201,7 +204,9 @@ typedef struct RayState {
     RtWideRef stack[RT_WIDE_STACK];
     RtPreparedRay ray; /* for hit functions */
     char apart[RT_CACHE_LINE];
-} RayState;
+};
+
+_Static_assert(sizeof(RayState) == RT_WIDE_STATE_BYTES, "the build allocates states");
 
 /* States in an array would compete for the same lines of the cache. */
 _Static_assert(sizeof(RayState) % 4096 >= RT_CACHE_LINE, "states do not lie pages apart");

@@ -80,15 +80,6 @@ RtVec3 rt_transform_point(const RtTransform *transform, RtVec3 point) {
     return rt_narrow(rt_transform_pointd(transform, rt_widen(point)));
 }
 
-RtVec3d rt_transform_vectord(const RtTransform *transform, RtVec3d vector) {
-    RtVec3d moved;
-    for (int row = 0; row < 3; row++) {
-        const double *m = transform->m[row];
-        moved.at[row] = m[0] * vector.x + m[1] * vector.y + m[2] * vector.z;
-    }
-    return moved;
-}
-
 /* The largest column sum of a matrix: at most sqrt(3) times, and at least 1 / sqrt(3) of, the factor by which
  * it stretches vectors at most. */
 static double stretch(const RtTransform *t) {

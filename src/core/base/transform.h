@@ -40,9 +40,6 @@ RtStatus rt_transform_translate(RtTransform *transform, RtVec3 by, RtError *erro
 RtVec3d rt_transform_pointd(const RtTransform *transform, RtVec3d point);
 RtVec3 rt_transform_point(const RtTransform *transform, RtVec3 point);
 
-/* Transforms a vector, which a translation does not change. */
-RtVec3d rt_transform_vectord(const RtTransform *transform, RtVec3d vector);
-
 /* *inverse undoes *transform, up to rounding. Rejects what would leave too few digits: a determinant not above
  * 0 (mirrors are not supported), and lengths that grow by factors more than RT_MAX_STRETCH apart in different
  * directions, or by more than that in any. */

@@ -214,7 +214,11 @@ RtStatus rt_geometry_add_instance(RtGeometry *geometry, const RtGeometry *part, 
         return rt_fail(error, RT_BAD_INPUT, "the instances amount to more than 4e9 objects");
     if (part->nesting >= RT_MAX_NESTING)
         return rt_fail(error, RT_BAD_INPUT, "instances are nested in more than %d levels", RT_MAX_NESTING);
-    RT_TRY(rt_transform_invert(to_world, &instance.to_part, error));
+    RtTransform to_part;
+    RT_TRY(rt_transform_invert(to_world, &to_part, error));
+    for (int column = 0; column < 4; column++) {
+        for (int row = 0; row < 3; row++) instance.columns[column][row] = to_part.m[row][column];
+    }
     RT_TRY(append_instance(geometry, &instance, error));
     const uint32_t crossings = most_crossings(part);
     if (part->nesting + 1 > geometry->nesting) geometry->nesting = part->nesting + 1;

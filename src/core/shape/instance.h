@@ -4,7 +4,7 @@
  *
  * A part is a finished geometry that any number of instances share. To the geometry that contains it, an
  * instance is one object with a box. A ray that enters it is moved into the part, where t stays what it was,
- * because the direction is not normalised: to_part in double, then rounded to float32 once, at each level.
+ * because the direction is not normalised: in double, then rounded to float32 once, at each level.
  *
  * The hit on an instance is the part's nearest hit of the moved ray, clamped to the interval in which the ray
  * is in the instance's own thick box (core/base/ray.h), and a ray that misses that box misses the instance.
@@ -25,20 +25,33 @@ struct RtGeometry;
 enum { RT_MAX_NESTING = 16 }; /* levels of instances in instances */
 
 typedef struct RtInstance {
-    RtTransform to_world, to_part;
+    RtTransform to_world;
+    double columns[4][4];              /* of the inverse: images of the axes and of the origin; the last row is 0 */
     const struct RtGeometry *geometry; /* of the part; borrowed */
     uint32_t part;                     /* its index in the scene (core/scene/scene.h) */
     uint32_t first;                    /* id of the part's first object */
 } RtInstance;
 
+/* m p, or with `at` the moved point m p + at, each lane in this order, rounded to float32. */
+static inline RtFloat4 rt_instance_move(const double columns[4][4], RtFloat4 p, bool at) {
+    RtDouble4 c[4];
+    memcpy(c, columns, sizeof c);
+    RtDouble4 sum = c[0] * (double)p[0] + c[1] * (double)p[1] + c[2] * (double)p[2];
+    if (at) sum += c[3];
+    return rt_round4(sum);
+}
+
 /* Moves a ray into the part. False if it is not a valid ray there, for coordinates beyond RT_MAX_COORDINATE
  * or a direction that vanishes: such a ray misses the instance. */
 static inline bool rt_instance_enter(const RtInstance *instance, const RtRay *ray, RtRay *inside) {
-    const RtTransform *m = &instance->to_part;
+    const RtFloat4 org = rt_instance_move(instance->columns, rt_loadu4(ray->org.at), true);
+    const RtFloat4 dir = rt_instance_move(instance->columns, rt_loadu4(ray->dir.at), false);
     *inside = *ray;
-    inside->org = rt_transform_point(m, ray->org);
-    inside->dir = rt_narrow(rt_transform_vectord(m, rt_widen(ray->dir)));
-    return rt_ray_is_valid(inside);
+    memcpy(&inside->org, &org, sizeof inside->org);
+    memcpy(&inside->dir, &dir, sizeof inside->dir);
+    const uint32_t good = rt_bits((rt_abs(org) <= RT_MAX_COORDINATE) & (rt_abs(dir) <= FLT_MAX)),
+                   some = rt_bits(dir != 0);
+    return (good & 7) == 7 && (some & 7);
 }
 
 #endif
