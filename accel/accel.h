@@ -92,7 +92,7 @@ uint64_t rt_accel_byte_limit(const RtScene *scene);
 
 /* The memory that the kernels of a layer may write to. */
 typedef struct RtScratch {
-    void *own;             /* [scratch_bytes]; NULL if no layer needs any */
+    void *own;               /* [scratch_bytes]; NULL if no layer needs any */
     RtHitMemory *hit_memory; /* of hit functions (rt_hit_ray) */
 } RtScratch;
 
@@ -371,7 +371,7 @@ RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, si
 typedef struct RtQuery {
     const RtAccel *accel;
     RtScratch scratch[RT_MAX_LAYERS]; /* of each layer, topmost first; scratch[0] owns all memory */
-    struct RtQuery *parts; /* [scene->part_count] owned, a query in each part; NULL in those */
+    struct RtQuery *parts;            /* [scene->part_count] owned, a query in each part; NULL in those */
 } RtQuery;
 
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error);

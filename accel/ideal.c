@@ -2,9 +2,9 @@
 /* ideal: recorded answers, with one object test for a ray that hits and none for one that misses: the cost of
  * an accelerator that knows everything in advance, a lower bound for all others.
  *
- * Layout: the nearest object for each recorded ray, or the instance that contains it. A ray is recognised by its address, so the
- * lookup costs nothing: rays between `rays` and `rays + count` are recorded. All other rays are tested
- * against every object, as by brute, so every answer is right. */
+ * Layout: the nearest object for each recorded ray, or the instance that contains it. A ray is recognised by
+ * its address, so the lookup costs nothing: rays between `rays` and `rays + count` are recorded. All other
+ * rays are tested against every object, as by brute, so every answer is right. */
 #include "accel/kernel.h"
 
 typedef struct Ideal {

@@ -15,8 +15,8 @@ RT_KERNEL bool enter(const RtGeometry *geometry, uint32_t id, const RtPreparedRa
     if (!rt_enter_begin(geometry, id, ray, best, &entry, tally)) return false;
     entry.inside.kind = 0; /* one tally for all kinds */
     const uint64_t rays = tally ? tally->rays : 0, hits = tally ? tally->hits : 0;
-    rt_trace_stream(query->accel, query->scratch, &entry.inside, 1, any ? NULL : &hit, any ? &hit.object : NULL,
-                    tally);
+    rt_trace_stream(query->accel, query->scratch, &entry.inside, 1, any ? NULL : &hit,
+                    any ? &hit.object : NULL, tally);
     if (tally) {
         tally->rays = rays; /* it is the same ray */
         tally->hits = hits;
@@ -24,11 +24,12 @@ RT_KERNEL bool enter(const RtGeometry *geometry, uint32_t id, const RtPreparedRa
     return rt_enter_end(instance, &entry, hit, any, best);
 }
 
-bool rt_enter_timed(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any, RtHit *best) {
+bool rt_enter_timed(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any,
+                    RtHit *best) {
     return any ? enter(geometry, id, ray, true, best, NULL) : enter(geometry, id, ray, false, best, NULL);
 }
 
-bool rt_enter_counted(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any, RtHit *best,
-                      RtTally *tally) {
+bool rt_enter_counted(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any,
+                      RtHit *best, RtTally *tally) {
     return enter(geometry, id, ray, any, best, tally);
 }

@@ -34,8 +34,8 @@ RT_KERNEL bool rt_take_hit(RtHit hit, bool any, RtHit *best, RtTally *tally) {
 
 /* Tests an instance, whose hit is on an object of its part (accel/instance.c). Returns as rt_take_hit. */
 bool rt_enter_timed(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any, RtHit *best);
-bool rt_enter_counted(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any, RtHit *best,
-                      RtTally *tally);
+bool rt_enter_counted(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any,
+                      RtHit *best, RtTally *tally);
 
 /* One object test, by the hit function. Returns as rt_take_hit. */
 RT_KERNEL bool rt_test_object(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any,
@@ -159,7 +159,7 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
         for (size_t i = 0; i < count; i++) {                                                                 \
             RtTally *tally = counted ? &tallies[rays[i].kind] : NULL;                                        \
             RtPreparedRay prepared;                                                                          \
-            rt_hit_ray(&prepared, &accel->scene->geometry, &rays[i], scratch->hit_memory);                    \
+            rt_hit_ray(&prepared, &accel->scene->geometry, &rays[i], scratch->hit_memory);                   \
             RtHit best = RT_MISS;                                                                            \
             search((const Type *)accel, scratch->own, &prepared, any, &best, tally);                         \
             rt_put_answer(&best, i, any, hits, occluders, tally);                                            \

@@ -152,7 +152,7 @@ typedef struct Trace {
     Context context; /* first, because callbacks get a pointer to it */
     RTCIntersectFunctionN intersect;
     RTCOccludedFunctionN occluded;
-    Search *searches;      /* by ray id */
+    Search *searches;        /* by ray id */
     RtHitMemory *hit_memory; /* of hit functions */
 } Trace;
 

@@ -304,7 +304,8 @@ typedef struct Waiting {
 } Waiting;
 
 /* Sorts numbers of waiting rays by the byte at `shift` of the part that they enter; keeps their order. */
-static inline void sort_by_part(const Query *q, const Waiting *w, uint32_t *rays, uint32_t count, uint32_t shift) {
+static inline void sort_by_part(const Query *q, const Waiting *w, uint32_t *rays, uint32_t count,
+                                uint32_t shift) {
     uint32_t ends[257] = {0}, sorted[RT_WIDE_MAX_STATES];
     for (uint32_t i = 0; i < count; i++)
         ends[1 + (rt_instance_of(q->geometry, w->object[rays[i]])->part >> shift & 255)]++;
@@ -354,7 +355,8 @@ RT_KERNEL void test_slot(const Query *q, Waiting *w, uint32_t slot, bool any, bo
         for (end = first; end < count && rt_instance_of(g, w->object[rays[end]])->part == part; end++)
             inside[end] = w->entry[rays[end]].inside;
         rt_trace_stream(parts[part].accel, parts[part].scratch, inside + first, end - first,
-                        any ? NULL : hits + first, any ? occluders + first : NULL, counted ? q->tallies : NULL);
+                        any ? NULL : hits + first, any ? occluders + first : NULL,
+                        counted ? q->tallies : NULL);
     }
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t k = rays[i];
@@ -366,8 +368,8 @@ RT_KERNEL void test_slot(const Query *q, Waiting *w, uint32_t slot, bool any, bo
     }
 }
 
-/* Functions of their own, which are not inlined: the linker fails where an inlined one loads the address of the
- * thread's observer into a vector (gcc 12 with AVX-512). */
+/* Functions of their own, which are not inlined: the linker fails where an inlined one loads the address of
+ * the thread's observer into a vector (gcc 12 with AVX-512). */
 static __attribute__((noinline)) void test_slot_timed(const Query *q, Waiting *w, uint32_t slot, bool any) {
     test_slot(q, w, slot, any, false);
 }
@@ -383,7 +385,8 @@ RT_KERNEL void test_waiting(const Query *q, RayQueues *t, Waiting *w, bool any, 
         if (objects > most) most = objects;
         w->over[i] = false;
     }
-    for (uint32_t slot = 0; slot < most; slot++) (counted ? test_slot_counted : test_slot_timed)(q, w, slot, any);
+    for (uint32_t slot = 0; slot < most; slot++)
+        (counted ? test_slot_counted : test_slot_timed)(q, w, slot, any);
     for (uint32_t i = 0; i < w->count; i++) finish_leaf(q, t, w->ray[i], w->over[i], any, ahead);
 }
 
@@ -414,7 +417,8 @@ RT_KERNEL void trace_many(const Query *q, bool any, bool counted) {
     const bool ahead = q->self->prefetch;
     Candidates candidates[RT_WIDE_MAX_STATES];
     RayQueues t = {0};
-    for (uint32_t i = 0; i < q->self->in_flight; i++) start_next_ray(q, &t, &q->states[i], any, counted, ahead);
+    for (uint32_t i = 0; i < q->self->in_flight; i++)
+        start_next_ray(q, &t, &q->states[i], any, counted, ahead);
     while (t.in_flight > 0) {
         while (t.count[RT_WIDE_NODE] > t.in_flight / 4) visit_nodes(q, &t, any, counted, ahead);
         uint32_t n = prefilter_leaves(q, &t, candidates, counted, ahead);
@@ -544,8 +548,9 @@ RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay
     const RtWide *self = (const RtWide *)accel;
     const RtWideTree *tree = any ? self->occluded : &self->trees[0];
     Scratch *own = scratch->own;
-    const Query q = {self,    tree,        &accel->scene->geometry, scratch, rays, hits, occluders,
-                     tallies, &own->source, own->states};
+    const Query q = {
+        self,         tree,       &accel->scene->geometry, scratch, rays, hits, occluders, tallies,
+        &own->source, own->states};
     if (!counted && (self->in_flight == 1 || count == 1)) {
         trace_one_by_one(&q, count, any);
         return;

@@ -383,12 +383,12 @@ static json_t *stats_json(const Run *run) {
     return json_pack(
         "{s:s, s:s, s:s, s:I, s:I, s:i, s:i, s:i, s:b, s:i, s:i, s:f, s:I, s:o, s:I, s:f, s:f, s:o, s:o}",
         "scene", run->scene.name, "accel", o->accels[0], "spec", b->spec, "objects",
-        (json_int_t)rt_geometry_id_count(&run->scene.geometry), "lights", (json_int_t)run->scene.light_count, "width",
-        (int)s->width, "height", (int)s->height, "samples", (int)s->samples, "corners", (int)s->corners,
-        "depth", (int)o->depth, "threads", rt_thread_count(o->threads), "build_seconds", b->build_seconds,
-        "bytes", (json_int_t)b->description.bytes, "structure", rt_json_structure(&b->description), "rays",
-        (json_int_t)rays, "seconds", run->timed.seconds, "mrays_per_s", mrays, "kinds",
-        kinds_json(&b->counted), "compared", compared_json(run));
+        (json_int_t)rt_geometry_id_count(&run->scene.geometry), "lights", (json_int_t)run->scene.light_count,
+        "width", (int)s->width, "height", (int)s->height, "samples", (int)s->samples, "corners",
+        (int)s->corners, "depth", (int)o->depth, "threads", rt_thread_count(o->threads), "build_seconds",
+        b->build_seconds, "bytes", (json_int_t)b->description.bytes, "structure",
+        rt_json_structure(&b->description), "rays", (json_int_t)rays, "seconds", run->timed.seconds,
+        "mrays_per_s", mrays, "kinds", kinds_json(&b->counted), "compared", compared_json(run));
 }
 
 static void print_rays(const Run *run) {
@@ -427,9 +427,9 @@ static void print_summary(const Run *run) {
     const RtSampling *s = &run->scene.sampling;
     const Built *b = &run->built[0];
     printf("%s: %u object%s, %u light%s. %s: built in %.3g s, %.3g MB. %u x %u pixels%s",
-           run->scene.name[0] ? run->scene.name : o->scene, objects, rt_plural(objects), run->scene.light_count,
-           rt_plural(run->scene.light_count), b->spec, b->build_seconds, (double)b->description.bytes * 1e-6,
-           s->width, s->height, s->corners ? " at their corners" : "");
+           run->scene.name[0] ? run->scene.name : o->scene, objects, rt_plural(objects),
+           run->scene.light_count, rt_plural(run->scene.light_count), b->spec, b->build_seconds,
+           (double)b->description.bytes * 1e-6, s->width, s->height, s->corners ? " at their corners" : "");
     if (run->by_default) /* its speed says nothing about this one */
         printf(", drawn over an image by %s.", rt_accel_default());
     else if (total_rays(&run->timed) > 0)

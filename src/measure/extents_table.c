@@ -61,9 +61,9 @@ static RtBall sphere_about_extents(const RtGeometry *geometry, uint32_t id) {
 typedef struct Survey {
     const Population *population;
     const RtExtentsTable *table;
-    RtTightness *out;      /* [table->choice_count] */
-    RtBall *spheres;       /* [population->count] */
-    Fitted *fitted;        /* [table->choice_count] */
+    RtTightness *out;        /* [table->choice_count] */
+    RtBall *spheres;         /* [population->count] */
+    Fitted *fitted;          /* [table->choice_count] */
     RtHitMemory *hit_memory; /* of hit functions */
 } Survey;
 
@@ -170,7 +170,7 @@ typedef struct Bench {
     RtRay chords[CHORDS]; /* that meet the box of their object */
     RtPreparedRay prepared[CHORDS];
     uint32_t objects[CHORDS]; /* of each chord */
-    RtHitMemory *hit_memory;    /* of hit functions */
+    RtHitMemory *hit_memory;  /* of hit functions */
 } Bench;
 
 /* The extents of one choice. */

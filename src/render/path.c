@@ -206,8 +206,8 @@ uint32_t rt_path_run(const RtPath *path, uint32_t first) {
 
 /* ---- which ray ---- */
 
-static RtStatus spawn(const RtAccel *accel, RtRayKind kind, uint32_t light, RtRay *ray, RtHitMemory *hit_memory,
-                      RtHit hit, RtError *error) {
+static RtStatus spawn(const RtAccel *accel, RtRayKind kind, uint32_t light, RtRay *ray,
+                      RtHitMemory *hit_memory, RtHit hit, RtError *error) {
     const RtScene *scene = accel->scene;
     RtRay spawned[RT_MAX_SPAWN];
     float factors[RT_MAX_SPAWN];

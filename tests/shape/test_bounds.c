@@ -61,7 +61,7 @@ static RtVec3d surface_point(const RtGeometry *g, uint32_t id, RtRandom *random)
     case RT_SHAPE_TRIANGLE: return triangle_point(&g->triangles[index], random);
     case RT_SHAPE_CONE: return cone_point(&g->cones[index], random);
     case RT_SHAPE_INSTANCE: /* tests/accel/test_instances.c */
-    case RT_SHAPE_CSG: /* tests/shape/test_csg.c */
+    case RT_SHAPE_CSG:      /* tests/shape/test_csg.c */
     case RT_SHAPE_COUNT: break;
     }
     return rt_vec3d(NAN, NAN, NAN);

@@ -40,9 +40,9 @@ RtStatus rt_transform_translate(RtTransform *transform, RtVec3 by, RtError *erro
 RtVec3d rt_transform_pointd(const RtTransform *transform, RtVec3d point);
 RtVec3 rt_transform_point(const RtTransform *transform, RtVec3 point);
 
-/* *inverse undoes *transform, up to rounding. Rejects what would leave too few digits: a determinant not above
- * 0 (mirrors are not supported), and lengths that grow by factors more than RT_MAX_STRETCH apart in different
- * directions, or by more than that in any. */
+/* *inverse undoes *transform, up to rounding. Rejects what would leave too few digits: a determinant not
+ * above 0 (mirrors are not supported), and lengths that grow by factors more than RT_MAX_STRETCH apart in
+ * different directions, or by more than that in any. */
 #define RT_MAX_STRETCH 1e6
 RtStatus rt_transform_invert(const RtTransform *transform, RtTransform *inverse, RtError *error);
 

@@ -69,7 +69,8 @@ struct RtScene {
     RtWarnings warnings; /* about the files it was read from */
     RtVec3d offset;      /* readers subtract it from each position, in double, before they round to float32 */
     uint32_t part_count, part_capacity;
-    RtScene **parts; /* [part_count] owned, finished: objects and materials that instances place; none in parts */
+    RtScene *
+        *parts; /* [part_count] owned, finished: objects and materials that instances place; none in parts */
 };
 
 #define RT_OWN_MATERIALS UINT32_MAX

@@ -29,7 +29,7 @@ typedef struct Names {
 typedef struct Reader {
     RtYaml yaml;
     RtSceneOpener *open_named;
-    RtScene *scene;       /* that objects are added to: `whole`, or a part of it */
+    RtScene *scene; /* that objects are added to: `whole`, or a part of it */
     RtScene *whole;
     Names parts;          /* entry i is part i of the scene */
     Names materials;      /* entry i is material i of the scene */
@@ -627,8 +627,8 @@ static RtStatus find_part(Reader *r, const RtYamlNode *entry, uint32_t *part) {
     }
     const RtYamlNode *at = rt_yaml_get(&r->yaml, entry, "part");
     if (found)
-        return rt_yaml_fail(&r->yaml, at, "the part '%s' is not complete here: a part contains earlier parts only",
-                            name);
+        return rt_yaml_fail(&r->yaml, at,
+                            "the part '%s' is not complete here: a part contains earlier parts only", name);
     for (uint32_t i = 0; i < r->parts.count && count < 64; i++) known[count++] = r->parts.all[i].name;
     char suggestion[RT_MAX_SUGGESTION];
     rt_suggest(name, known, count, suggestion);
@@ -646,7 +646,8 @@ static RtStatus add_instance(Reader *r, const RtYamlNode *entry) {
     if (rt_yaml_get(y, entry, "material")) RT_TRY(find_material(r, entry, &material));
     const RtYamlNode *place = rt_yaml_get(y, entry, "place");
     if (place && rt_yaml_get(y, entry, "transform"))
-        return rt_yaml_fail(y, place, "`place`, a matrix, and `transform`, a list of steps, say the same: give one");
+        return rt_yaml_fail(y, place,
+                            "`place`, a matrix, and `transform`, a list of steps, say the same: give one");
     RT_TRY(read_transform(r, entry, r->scene->offset, &transform, &given));
     if (place) RT_TRY(rt_yaml_doubles(y, entry, "place", 12, &transform.m[0][0]));
     for (int a = 0; a < 3 && place; a++) transform.m[a][3] -= r->scene->offset.at[a];
@@ -783,7 +784,9 @@ static RtStatus build(Reader *r) {
     const RtYaml *y = &r->yaml;
     const RtYamlNode *root = y->nodes;
     RT_TRY(rt_yaml_check_format(y));
-    RT_TRY(rt_yaml_keys(y, root, "camera? background? ambient? lights? materials? solids? parts? objects? instances? format?"));
+    RT_TRY(rt_yaml_keys(
+        y, root,
+        "camera? background? ambient? lights? materials? solids? parts? objects? instances? format?"));
     const RtYamlNode *camera = rt_yaml_get(y, root, "camera");
     r->yaml.offset = r->scene->offset;
     if (camera) RT_TRY(set_camera(r, camera));
@@ -806,14 +809,16 @@ static RtStatus load(Reader *r) {
 }
 
 RtStatus rt_yaml_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
-    Reader r = {.open_named = open_named, .scene = scene, .whole = scene, .standard = UINT32_MAX, .error = error};
+    Reader r = {
+        .open_named = open_named, .scene = scene, .whole = scene, .standard = UINT32_MAX, .error = error};
     RT_TRY(rt_yaml_open(&r.yaml, path, error));
     return load(&r);
 }
 
 RtStatus rt_yaml_load_text(const char *name, const char *text, RtSceneOpener *open_named, RtScene *scene,
                            RtError *error) {
-    Reader r = {.open_named = open_named, .scene = scene, .whole = scene, .standard = UINT32_MAX, .error = error};
+    Reader r = {
+        .open_named = open_named, .scene = scene, .whole = scene, .standard = UINT32_MAX, .error = error};
     RT_TRY(rt_yaml_parse(&r.yaml, name, text, strlen(text), error));
     return load(&r);
 }

@@ -185,9 +185,9 @@ static __attribute__((noinline)) bool rt_rarer_hit(const RtGeometry *geometry, u
     return false;
 }
 
-/* The hit function of every object but instances (accel/instance.c): true if the ray (from rt_hit_ray) hits object `id` in [tmin, tmax]; *t
- * is the first hit. The result has the same bits for the same ray and object, whatever was found before.
- * `tally` may be NULL; it counts tests inside CSG trees. */
+/* The hit function of every object but instances (accel/instance.c): true if the ray (from rt_hit_ray) hits
+ * object `id` in [tmin, tmax]; *t is the first hit. The result has the same bits for the same ray and object,
+ * whatever was found before. `tally` may be NULL; it counts tests inside CSG trees. */
 static inline __attribute__((always_inline)) bool
 rt_object_hit(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, float *t, RtTally *tally) {
     RtRef ref = geometry->objects[id];

@@ -26,7 +26,7 @@ enum { RT_MAX_NESTING = 16 }; /* levels of instances in instances */
 
 typedef struct RtInstance {
     RtTransform to_world;
-    double columns[4][4];              /* of the inverse: images of the axes and of the origin; the last row is 0 */
+    double columns[4][4]; /* of the inverse: images of the axes and of the origin; the last row is 0 */
     const struct RtGeometry *geometry; /* of the part; borrowed */
     uint32_t part;                     /* its index in the scene (core/scene/scene.h) */
     uint32_t first;                    /* id of the part's first object */
