@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Entering instances (core/shape/instance.h), in two halves: between them the part is asked for the hit of
+ * the moved ray, which is alone (instance.c) or one of a stream (wide).
+ *
+ * The part is asked for hits up to the best one, but not where the interval of the instance's thick box ends
+ * before it: a hit beyond would be clamped to that end, and so be nearer. */
+#ifndef RT_ACCEL_INSTANCE_H
+#define RT_ACCEL_INSTANCE_H
+
+#include "accel/kernel.h"
+
+/* A ray that enters an instance. */
+typedef struct RtEntry {
+    RtRay inside;    /* moved into the part */
+    float near, far; /* where it is in the instance's own thick box */
+} RtEntry;
+
+static inline const RtInstance *rt_instance_of(const RtGeometry *geometry, uint32_t id) {
+    return &geometry->instances[rt_ref_index(geometry->objects[id])];
+}
+
+/* False if the ray misses the instance, or can find nothing better there. */
+RT_KERNEL bool rt_enter_begin(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray,
+                              const RtHit *best, RtEntry *entry, RtTally *tally) {
+    rt_count_test(geometry, id, tally);
+    rt_box_own_span(&geometry->boxes[id], ray, &entry->near, &entry->far);
+    if (!(entry->near <= entry->far && entry->near <= rt_limit(ray, best) && entry->far >= ray->tmin))
+        return false;
+    if (!rt_instance_enter(rt_instance_of(geometry, id), (const RtRay *)ray->ray, &entry->inside))
+        return false;
+    if (best->t < entry->far) entry->inside.tmax = rt_minf(entry->inside.tmax, best->t);
+    return true;
+}
+
+/* Takes the answer of the part: its nearest hit, or if `any` an occluder, with any t. Returns as rt_take_hit.
+ */
+RT_KERNEL bool rt_enter_end(const RtInstance *instance, const RtEntry *entry, RtHit hit, bool any,
+                            RtHit *best) {
+    if (hit.object == RT_NO_OBJECT) return false;
+    if (any || hit.t < entry->near) hit.t = entry->near;
+    if (hit.t > entry->far) hit.t = entry->far;
+    hit.object += instance->first;
+    if (rt_hit_before(hit.t, hit.object, *best)) *best = hit;
+    return any;
+}
+
+#endif
