@@ -75,29 +75,34 @@ static void add_sizes(const RtDescription *own, const RtTally *build, RtDescript
     if (own->depth > out->depth) out->depth = own->depth;
 }
 
-/* Each part once, however many instances share it. */
-static void add_parts(const RtAccel *accel, RtDescription *out) {
-    for (uint32_t i = 0; accel->parts && i < accel->scene->part_count; i++) {
+/* Adds the parts, each once, however many instances share it. What is predicted for a level says nothing of
+ * the whole. */
+static void add_parts(const RtAccel *base, RtDescription *out) {
+    for (uint32_t i = 0; i < base->scene->part_count; i++) {
         RtDescription part;
-        rt_accel_describe(accel->parts[i], &part);
+        rt_accel_describe(base->parts[i], &part);
         add_sizes(&part, &part.build, out);
     }
+#define UNKNOWN(name, meaning) out->name = NAN;
+    RT_PREDICTIONS(UNKNOWN)
+    RT_QUALITIES(UNKNOWN)
+#undef UNKNOWN
 }
 
 void rt_accel_describe(const RtAccel *accel, RtDescription *out) {
+    const RtAccel *base = rt_accel_base(accel);
     accel->ops->describe(accel, out);
     out->build = accel->build_tally;
-    add_parts(accel, out);
     while ((accel = accel->below)) {
         RtDescription own;
         accel->ops->describe(accel, &own);
         add_sizes(&own, &accel->build_tally, out);
-        add_parts(accel, out);
 #define COPY_PREDICTION(name, meaning) out->name = own.name;
         RT_PREDICTIONS(COPY_PREDICTION)
         RT_QUALITIES(COPY_PREDICTION)
 #undef COPY_PREDICTION
     }
+    if (base->parts) add_parts(base, out);
 }
 
 RtStatus rt_accel_validate(const RtAccel *accel, RtError *error) {

@@ -269,9 +269,10 @@ static void shorten_labels(RtExperiment *experiment) {
                         RT_MAX_LABEL);
 }
 
-static RtStatus check_label(const char *label, RtError *error) {
+/* Labels of accelerators name no files, and may have a '/', as specs do. */
+static RtStatus check_label(const char *label, bool of_accel, RtError *error) {
     for (const char *c = label; *c; c++) {
-        if (rt_may_label(*c)) continue;
+        if (rt_may_label(*c) || (of_accel && *c == '/')) continue;
         return rt_fail(
             error, RT_BAD_INPUT,
             "'%s' cannot name a row, a plot or a folder: use a name or `label` without blanks, quotes, "
@@ -322,7 +323,7 @@ static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *e
         bool meet = ~(candidate->excluded | other->excluded) & all;
         if (meet && strcmp(candidate->label, other->label) == 0) return fail_twice(candidate->label, error);
     }
-    return check_label(candidate->label, error);
+    return check_label(candidate->label, true, error);
 }
 
 /* A best-of is missing if all its members are. */
@@ -369,8 +370,8 @@ static RtStatus check_swept(const RtExperiment *experiment, const RtSwept *swept
     uint32_t count = rt_experiment_swept(experiment, keys);
     for (uint32_t i = 0; i < swept->count; i++) {
         uint32_t k = 0;
-        RT_TRY(check_label(swept->keys[i], error));
-        RT_TRY(check_label(swept->values[i], error));
+        RT_TRY(check_label(swept->keys[i], false, error));
+        RT_TRY(check_label(swept->values[i], false, error));
         while (k < count && strcmp(keys[k].key, swept->keys[i]) != 0) k++;
         if (k < count) continue;
         return rt_fail(error, RT_BAD_INPUT, "'%s' is one too many: at most %d parameters are swept",
@@ -430,7 +431,7 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
         const RtWorkload *workload = &experiment->workloads[i];
         if (rt_workload_find(experiment, workload->label) < i) return fail_twice(workload->label, error);
         label_files(experiment, i);
-        RT_TRY(check_label(workload->label, error));
+        RT_TRY(check_label(workload->label, false, error));
         RT_TRY(check_swept(experiment, &workload->swept, error));
     }
     for (uint32_t i = 0; i < experiment->candidate_count; i++) {
@@ -466,7 +467,7 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     if (*experiment->name == '.')
         return rt_fail(error, RT_BAD_INPUT,
                        "'%s' cannot name a result directory: begin it with another letter", experiment->name);
-    return check_label(experiment->name, error);
+    return check_label(experiment->name, false, error);
 }
 
 /* ---- the cells that a run measures ---- */
