@@ -395,10 +395,6 @@ static double downtown_at(int64_t i, int64_t j, int64_t size) {
     return away < 1 ? (1 - away) * (1 - away) : 0;
 }
 
-static RtVec3d corner_of(int64_t i, int64_t j) {
-    return rt_vec3d((block + street) * (double)i, (block + street) * (double)j, kerb);
-}
-
 static void add_block(RtSceneBuilder *b, RtRandom random, RtVec3d corner, double downtown) {
     rt_build_origin(b, rt_vec3d(corner.x, corner.y, 0), 0);
     b->material = PAVING;
@@ -421,19 +417,18 @@ static void make_parts(RtSceneBuilder *b, uint64_t seed, uint32_t parts) {
         double share = (i + 0.5) / parts;
         rt_build_begin_part(b);
         rt_build_materials(b, materials, MATERIALS);
-        add_block(b, rt_random(seed, PART_STREAM | i), corner_of(0, 0), share * share);
+        add_block(b, rt_random(seed, PART_STREAM | i), rt_vec3d(0, 0, kerb), share * share);
         rt_build_end_part(b);
     }
 }
 
-static void add_instance(RtSceneBuilder *b, RtRandom random, RtVec3d corner, double downtown,
-                         uint32_t parts) {
+static void add_instance(RtSceneBuilder *b, RtRandom random, RtVec3d corner, double downtown) {
     double share = 0.6 * downtown + rt_random_betweend(&random, 0, 0.4), half = block / 2;
     double sign = rt_random_below(&random, 2) ? -1 : 1; /* about the middle of the block */
     const RtTransform to_world = {{{sign, 0, 0, corner.x + half - sign * half},
                                    {0, sign, 0, corner.y + half - sign * half},
                                    {0, 0, 1, 0}}};
-    rt_build_instance(b, (uint32_t)(share * parts), &to_world);
+    rt_build_instance(b, (uint32_t)(share * b->part_count), &to_world);
 }
 
 static void generate(RtSceneBuilder *b, const RtValue *values) {
@@ -452,17 +447,14 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
     b->material = ASPHALT;
     rt_build_box(b, rt_vec3d(-street, -street, 0), rt_vec3d(end, end, 0), RT_SIDE_TOP);
     const uint64_t seed = (uint64_t)values[SEED].i;
-    const uint32_t parts = (uint32_t)values[PARTS].i;
     const bool instances = values[INSTANCES].choice != RT_INSTANCES_OFF;
     b->flattened = values[INSTANCES].choice == RT_INSTANCES_FLATTENED;
-    if (instances) make_parts(b, seed, parts);
+    if (instances) make_parts(b, seed, (uint32_t)values[PARTS].i);
     for (int64_t j = 0; j < size; j++) {
         for (int64_t i = 0; i < size; i++) {
-            RtRandom random = rt_random(seed, (uint64_t)i << 32 | (uint64_t)j);
-            if (instances)
-                add_instance(b, random, corner_of(i, j), downtown_at(i, j, size), parts);
-            else
-                add_block(b, random, corner_of(i, j), downtown_at(i, j, size));
+            const RtRandom random = rt_random(seed, (uint64_t)i << 32 | (uint64_t)j);
+            const RtVec3d corner = {(block + street) * (double)i, (block + street) * (double)j, kerb};
+            (instances ? add_instance : add_block)(b, random, corner, downtown_at(i, j, size));
         }
     }
 }

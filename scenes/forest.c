@@ -206,15 +206,6 @@ static void add_tree(Tree *tree, RtVec3d foot) {
     add_branch(tree, foot, rt_normalized(lean), between(tree, 3.2, 5), 0);
 }
 
-static void add_trees(RtSceneBuilder *b, const Ground *ground, uint64_t n) {
-    for (uint64_t i = 0; i < n; i++) {
-        Tree tree = plant(b, ground->seed, i);
-        add_tree(&tree, b->counting ? rt_vec3d(0, 0, 0) : choose_foot(&tree, ground, i));
-    }
-}
-
-/* ---- trees as instances ---- */
-
 static void make_parts(RtSceneBuilder *b, uint64_t seed, uint32_t parts) {
     for (uint32_t i = 0; i < parts; i++) {
         rt_build_begin_part(b);
@@ -225,18 +216,15 @@ static void make_parts(RtSceneBuilder *b, uint64_t seed, uint32_t parts) {
     }
 }
 
-static void add_instances(RtSceneBuilder *b, const Ground *ground, uint64_t n, uint32_t parts) {
-    for (uint64_t i = 0; i < n; i++) {
-        Tree tree = {.random = rt_random(ground->seed, i)};
-        const uint32_t part = rt_random_below(&tree.random, parts);
-        RtVec3d foot = b->counting ? rt_vec3d(0, 0, 0) : choose_foot(&tree, ground, i);
-        RtTurn turn = rt_turn(between(&tree, 0, 360));
-        double scale = between(&tree, 0.8, 1.25), c = scale * turn.cosine, s = scale * turn.sine;
-        const double deeper = 0.3; /* the coarse ground may be lower than the hill */
-        const RtTransform to_world = {
-            {{c, -s, 0, foot.x}, {s, c, 0, foot.y}, {0, 0, scale, foot.z - deeper}}};
-        rt_build_instance(b, part, &to_world);
-    }
+/* The coarse ground may be lower than the hill, so it stands deeper. */
+static void add_instance(RtSceneBuilder *b, const Ground *ground, uint64_t i) {
+    Tree tree = {.random = rt_random(ground->seed, i)};
+    const uint32_t part = rt_random_below(&tree.random, b->part_count);
+    RtVec3d foot = b->counting ? rt_vec3d(0, 0, 0) : choose_foot(&tree, ground, i);
+    RtTurn turn = rt_turn(between(&tree, 0, 360));
+    double scale = between(&tree, 0.8, 1.25), c = scale * turn.cosine, s = scale * turn.sine;
+    const RtTransform to_world = {{{c, -s, 0, foot.x}, {s, c, 0, foot.y}, {0, 0, scale, foot.z - 0.3}}};
+    rt_build_instance(b, part, &to_world);
 }
 
 static uint64_t object_bytes(const RtValue *values) {
@@ -262,14 +250,15 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
     b->transformed = true;
     rt_build_materials(b, materials, MATERIALS);
     add_ground(b, &ground);
-    const uint64_t n = (uint64_t)values[N].i;
-    const uint32_t parts = (uint32_t)values[PARTS].i;
     b->flattened = values[INSTANCES].choice == RT_INSTANCES_FLATTENED;
-    if (instances) {
-        make_parts(b, ground.seed, parts);
-        add_instances(b, &ground, n, parts);
-    } else {
-        add_trees(b, &ground, n);
+    if (instances) make_parts(b, ground.seed, (uint32_t)values[PARTS].i);
+    for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) {
+        if (instances) {
+            add_instance(b, &ground, i);
+        } else {
+            Tree tree = plant(b, ground.seed, i);
+            add_tree(&tree, b->counting ? rt_vec3d(0, 0, 0) : choose_foot(&tree, &ground, i));
+        }
     }
 }
 
