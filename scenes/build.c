@@ -9,15 +9,25 @@
 /* While counting, a generator sets the camera of an unused scene. */
 static RtSceneBuilder run(RtScene *scene, bool counting, RtSceneGenerator *generate, const RtValue *values,
                           RtError *error) {
-    RtSceneBuilder b = {
-        .scene = scene, .counting = counting, .transform = rt_transform_identity(), .error = error};
+    RtSceneBuilder b = {.scene = scene,
+                        .whole = scene,
+                        .counting = counting,
+                        .transform = rt_transform_identity(),
+                        .error = error};
     generate(&b, values);
     rt_free(b.points);
     return b;
 }
 
 RtStatus rt_build_scene(RtScene *scene, RtSceneGenerator *generate, const RtValue *values, RtError *error) {
-    return run(scene, false, generate, values, error).status;
+    const RtSceneBuilder b = run(scene, false, generate, values, error);
+    RT_TRY(b.status);
+    RT_TRY(rt_scene_finish(scene, error));
+    if (!b.flattened) return RT_OK;
+    RtScene instanced = *scene;
+    RtStatus status = rt_scene_flatten(&instanced, scene, error);
+    rt_scene_clear(&instanced);
+    return status;
 }
 
 uint64_t rt_build_count(RtSceneGenerator *generate, const RtValue *values) {
@@ -66,6 +76,29 @@ void rt_build_origin(RtSceneBuilder *b, RtVec3d at, int quarters) {
     double c = cosine[quarters & 3], s = cosine[(quarters + 3) & 3];
     b->transformed = true;
     b->transform = (RtTransform){{{c, -s, 0, at.x}, {s, c, 0, at.y}, {0, 0, 1, at.z}}};
+}
+
+/* ---- parts ---- */
+
+void rt_build_begin_part(RtSceneBuilder *b) {
+    assert(b->scene == b->whole && b->part_count < RT_MAX_BUILT_PARTS);
+    b->scene = &b->part;
+    b->count_before = b->count;
+}
+
+void rt_build_end_part(RtSceneBuilder *b) {
+    b->part_sizes[b->part_count++] = b->count - b->count_before;
+    if (b->flattened) b->count = b->count_before;
+    b->scene = b->whole;
+    if (adds(b)) b->status = rt_scene_add_part(b->whole, &b->part, b->error);
+    rt_scene_clear(&b->part); /* after a failure */
+}
+
+void rt_build_instance(RtSceneBuilder *b, uint32_t part, const RtTransform *to_world) {
+    assert(part < b->part_count);
+    b->count += b->flattened ? b->part_sizes[part] : 1;
+    if (!adds(b)) return;
+    b->status = rt_scene_add_instance(b->scene, b->whole, part, to_world, RT_OWN_MATERIALS, b->error);
 }
 
 /* ---- curves ---- */

@@ -14,14 +14,25 @@
 #include "core/base/transform.h"
 #include "core/scene/nff.h"
 
+/* What stands in a scene that repeats itself: separate objects; instances of a few parts; or copies of these
+ * parts, moved by the same matrices (rt_scene_flatten). */
+enum { RT_INSTANCES_OFF, RT_INSTANCES_ON, RT_INSTANCES_FLATTENED };
+
+#define RT_MAX_BUILT_PARTS 64
+
 typedef struct RtSceneBuilder {
-    RtScene *scene;        /* borrowed; camera and background are set here */
+    RtScene *scene;        /* that objects are added to; camera and background are set here */
     bool counting;         /* count instead of adding */
     uint32_t material;     /* of the next objects */
     bool polygons;         /* a quad becomes one polygon; else two triangles */
     bool transformed;      /* else points are used as they are */
     RtTransform transform; /* of the next objects; spheres and cones need a uniform scale */
-    uint64_t count;        /* objects so far */
+    uint64_t count;        /* objects so far; those of a part once */
+    RtScene *whole;        /* borrowed: the scene, which has the parts */
+    RtScene part;          /* owned: what is between rt_build_begin_part and rt_build_end_part */
+    bool flattened;        /* set by the generator: instances become copies, and count as such */
+    uint32_t part_count;
+    uint64_t part_sizes[RT_MAX_BUILT_PARTS], count_before; /* objects in each part, and before this one */
     uint32_t point_capacity;
     RtVec3 *points; /* owned: for grid meshes */
     RtStatus status;
@@ -30,7 +41,7 @@ typedef struct RtSceneBuilder {
 
 typedef void RtSceneGenerator(RtSceneBuilder *b, const RtValue *values);
 
-/* Runs the generator on an initialised scene. */
+/* Runs the generator on an initialised scene and finishes it. */
 RtStatus rt_build_scene(RtScene *scene, RtSceneGenerator *generate, const RtValue *values, RtError *error);
 
 /* The number of objects that the generator adds. */
@@ -66,6 +77,13 @@ void rt_build_origin(RtSceneBuilder *b, RtVec3d at, int quarters);
 /* Point `i` of `n` on the unit circle, (cos, sin, 0) of i / n of a turn: the same bits everywhere, exact
  * at quarter turns. */
 RtVec3d rt_on_circle(uint32_t i, uint32_t n);
+
+/* What is added between them is the next part of the scene, with materials of its own. */
+void rt_build_begin_part(RtSceneBuilder *b);
+void rt_build_end_part(RtSceneBuilder *b);
+
+/* Adds an instance of a finished part to the scene or part; b->transform does not move it. */
+void rt_build_instance(RtSceneBuilder *b, uint32_t part, const RtTransform *to_world);
 
 void rt_build_sphere(RtSceneBuilder *b, RtVec3d center, double radius);
 void rt_build_cone(RtSceneBuilder *b, RtVec3d base, double base_radius, RtVec3d apex, double apex_radius);

@@ -114,7 +114,6 @@ RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error) {
     rt_params_format(builtin->params, builtin->param_count, values, scene->name + used,
                      sizeof scene->name - (size_t)used);
     RtStatus status = rt_build_scene(scene, builtin->generate, values, error);
-    if (status == RT_OK) status = rt_scene_finish(scene, error);
     if (status != RT_OK) rt_scene_clear(scene);
     return status;
 }

@@ -13,6 +13,16 @@
 /* The parameter `seed` of random scenes. */
 #define RT_BUILTIN_SEED "seed", RT_INT("1", 0, 1e15, "1"), "seed of the random numbers", "any"
 
+/* The parameter `instances` of scenes that repeat themselves, and `parts`, how many different parts are made.
+ */
+#define RT_BUILTIN_INSTANCES                                                                                 \
+    "instances", RT_CHOICE("off", "off|on|flattened"),                                                       \
+        "on: a few parts, placed many times; flattened: the same scene with copies in their place",          \
+        "the scene without repetition"
+#define RT_BUILTIN_PARTS(what)                                                                               \
+    "parts", RT_INT("8", 1, RT_MAX_BUILT_PARTS, "1|8"), "different " what ", unless instances=off",          \
+        "enough to hide the repetition"
+
 #define RT_SPD_SOURCE "SPD: E. Haines 1987, A Proposal for Standard Graphics Environments, IEEE CG&A 7(11)"
 
 typedef struct RtBuiltin {
@@ -51,7 +61,7 @@ RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error);
 /* The number of objects of such a spec, at least nearly, without building it. */
 RtStatus rt_builtin_objects(const char *spec, uint64_t *count, RtError *error);
 
-/* The number of objects for these values. */
+/* The number of objects for these values, those of a part once. */
 uint64_t rt_builtin_object_count(const RtBuiltin *builtin, const RtValue *values);
 
 /* Rejects values whose scene may need more than `bytes`, with the value of params[0] that would fit. */

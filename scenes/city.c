@@ -4,14 +4,17 @@
  *
  * Hard for structures that split space by planes: cells become flat, and the choice of the split plane
  * matters a lot. Lengths are in metres. Block (i, j) depends only on random stream (i, j); towers are
- * likely, and tall, near the middle. Each part stands at the origin of b->transform, with its
- * front, if it has one, towards -y; quads are polygons. */
+ * likely, and tall, near the middle. As an instance, a block is one of a few, which are in the order of their
+ * towers; half of them are turned by 180 degrees. Each piece of a block stands at the origin of b->transform,
+ * with its front, if it has one, towards -y; quads are polygons. */
 #include "scenes/builtin.h"
 
 #define PARAMS(X)                                                                                            \
     X(SIZE, "size", RT_INT("9", 1, 150, "1|3"),                                                              \
       "blocks along each edge of the city, of about 600 objects each", "tens of thousands of objects")       \
-    X(SEED, RT_BUILTIN_SEED)
+    X(SEED, RT_BUILTIN_SEED)                                                                                 \
+    X(INSTANCES, RT_BUILTIN_INSTANCES)                                                                       \
+    X(PARTS, RT_BUILTIN_PARTS("blocks"))
 
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
@@ -384,13 +387,15 @@ static void add_lots(RtSceneBuilder *b, RtRandom *random, RtVec3d corner, double
     }
 }
 
-static void add_block(RtSceneBuilder *b, uint64_t seed, int64_t i, int64_t j, int64_t size) {
-    RtRandom random = rt_random(seed, (uint64_t)i << 32 | (uint64_t)j);
+/* 0 at the edge of the city to 1 in the middle. */
+static double downtown_at(int64_t i, int64_t j, int64_t size) {
     double middle = (double)(size - 1) / 2, reach = 0.5 * (double)size;
     double off_x = ((double)i - middle) / reach, off_y = ((double)j - middle) / reach;
-    double away = off_x * off_x + off_y * off_y, downtown = away < 1 ? (1 - away) * (1 - away) : 0;
-    RtVec3d corner = {(block + street) * (double)i, (block + street) * (double)j, kerb};
+    double away = off_x * off_x + off_y * off_y;
+    return away < 1 ? (1 - away) * (1 - away) : 0;
+}
 
+static void add_block(RtSceneBuilder *b, RtRandom random, RtVec3d corner, double downtown) {
     rt_build_origin(b, rt_vec3d(corner.x, corner.y, 0), 0);
     b->material = PAVING;
     rt_build_box(b, rt_vec3d(0, 0, 0), rt_vec3d(block, block, kerb), RT_SIDES_STANDING);
@@ -401,6 +406,29 @@ static void add_block(RtSceneBuilder *b, uint64_t seed, int64_t i, int64_t j, in
         rt_build_origin(b, rt_vec3d(corner.x + pavement, corner.y + pavement, corner.z), 0);
         add_park(b, &random, block - 2 * pavement);
     }
+}
+
+/* ---- blocks as instances ---- */
+
+#define PART_STREAM (UINT64_C(1) << 63)
+
+static void make_parts(RtSceneBuilder *b, uint64_t seed, uint32_t parts) {
+    for (uint32_t i = 0; i < parts; i++) {
+        double share = (i + 0.5) / parts;
+        rt_build_begin_part(b);
+        rt_build_materials(b, materials, MATERIALS);
+        add_block(b, rt_random(seed, PART_STREAM | i), rt_vec3d(0, 0, kerb), share * share);
+        rt_build_end_part(b);
+    }
+}
+
+static void add_instance(RtSceneBuilder *b, RtRandom random, RtVec3d corner, double downtown) {
+    double share = 0.6 * downtown + rt_random_betweend(&random, 0, 0.4), half = block / 2;
+    double sign = rt_random_below(&random, 2) ? -1 : 1; /* about the middle of the block */
+    const RtTransform to_world = {{{sign, 0, 0, corner.x + half - sign * half},
+                                   {0, sign, 0, corner.y + half - sign * half},
+                                   {0, 0, 1, 0}}};
+    rt_build_instance(b, (uint32_t)(share * b->part_count), &to_world);
 }
 
 static void generate(RtSceneBuilder *b, const RtValue *values) {
@@ -418,8 +446,16 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
     b->polygons = true;
     b->material = ASPHALT;
     rt_build_box(b, rt_vec3d(-street, -street, 0), rt_vec3d(end, end, 0), RT_SIDE_TOP);
+    const uint64_t seed = (uint64_t)values[SEED].i;
+    const bool instances = values[INSTANCES].choice != RT_INSTANCES_OFF;
+    b->flattened = values[INSTANCES].choice == RT_INSTANCES_FLATTENED;
+    if (instances) make_parts(b, seed, (uint32_t)values[PARTS].i);
     for (int64_t j = 0; j < size; j++) {
-        for (int64_t i = 0; i < size; i++) add_block(b, (uint64_t)values[SEED].i, i, j, size);
+        for (int64_t i = 0; i < size; i++) {
+            const RtRandom random = rt_random(seed, (uint64_t)i << 32 | (uint64_t)j);
+            const RtVec3d corner = {(block + street) * (double)i, (block + street) * (double)j, kerb};
+            (instances ? add_instance : add_block)(b, random, corner, downtown_at(i, j, size));
+        }
     }
 }
 

@@ -5,13 +5,17 @@
  * Trees stand one per square of a grid, n of them from the front on, at a random position within it. A
  * broadleaf is a trunk that forks LEVELS times into FORKS (tapered prisms), with leaves around every twig;
  * a conifer is a trunk with whorls of boughs, each with a few broad hanging triangles of needles. Tree i
- * depends only on random stream i. The ground is noise from lattices of random heights (Perlin 1985, in
- * its simplest form); lengths are in metres. */
+ * depends only on random stream i. As an instance, it is one of a few trees, scaled and turned about the
+ * vertical; the ground, which would take most of the memory, then has a quarter of the triangles. The ground
+ * is noise from lattices of random heights (Perlin 1985, in its simplest form); lengths are in metres. */
+#include "core/base/elementary.h"
 #include "scenes/builtin.h"
 
 #define PARAMS(X)                                                                                            \
     X(N, "n", RT_INT("1000", 1, 1e6, "1|5"), "trees, of about 1020 triangles each", "a million triangles")   \
-    X(SEED, RT_BUILTIN_SEED)
+    X(SEED, RT_BUILTIN_SEED)                                                                                 \
+    X(INSTANCES, RT_BUILTIN_INSTANCES)                                                                       \
+    X(PARTS, RT_BUILTIN_PARTS("trees"))
 
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
@@ -45,6 +49,7 @@ static const double square = 6; /* edge of a tree's ground */
 
 /* Streams of lattice points follow those of trees. */
 #define LATTICE_STREAM (UINT64_C(1) << 63)
+#define PART_STREAM    (UINT64_C(1) << 62)
 
 static double lattice_height(uint64_t seed, uint32_t octave, uint32_t x, uint32_t y) {
     RtRandom random = rt_random(seed, LATTICE_STREAM | (uint64_t)octave << 60 | (uint64_t)x << 30 | y);
@@ -75,19 +80,21 @@ static double height_at(uint64_t seed, double x, double y) {
 
 typedef struct Ground {
     uint64_t seed;
-    uint32_t edge; /* squares with trees along an edge */
+    uint32_t edge;  /* squares with trees along an edge */
+    uint32_t cells; /* along a square */
 } Ground;
 
-enum { MARGIN = 3, CELLS = 2 }; /* squares without trees around, cells along a square */
+enum { MARGIN = 3 }; /* squares without trees around */
 
 static RtVec3d ground_point(const void *of, uint32_t column, uint32_t row) {
     const Ground *ground = of;
-    double x = square * ((double)column / CELLS - MARGIN), y = square * ((double)row / CELLS - MARGIN);
+    double x = square * ((double)column / ground->cells - MARGIN);
+    double y = square * ((double)row / ground->cells - MARGIN);
     return rt_vec3d(x, y, height_at(ground->seed, x, y));
 }
 
 static void add_ground(RtSceneBuilder *b, const Ground *ground) {
-    uint32_t cells = (ground->edge + 2 * MARGIN) * CELLS;
+    uint32_t cells = (ground->edge + 2 * MARGIN) * ground->cells;
     b->material = SOIL;
     rt_build_grid_mesh(
         b,
@@ -100,6 +107,7 @@ typedef struct Tree {
     RtSceneBuilder *b;
     RtRandom random;
     uint32_t bark, leaves; /* materials; for leaves the first of three */
+    bool conifer;
 } Tree;
 
 static double between(Tree *tree, double lo, double hi) {
@@ -164,35 +172,70 @@ static void add_conifer(Tree *tree, RtVec3d foot, double height) {
         add_bough(tree, foot, height, 0.16 + 0.82 * i / (WHORLS * BOUGHS));
 }
 
-static void add_tree(RtSceneBuilder *b, const Ground *ground, uint64_t i) {
-    Tree tree = {.b = b, .random = rt_random(ground->seed, i), .bark = BARK};
+/* A tree of a random kind. */
+static Tree plant(RtSceneBuilder *b, uint64_t seed, uint64_t stream) {
+    Tree tree = {.b = b, .random = rt_random(seed, stream), .bark = BARK};
     uint32_t die = rt_random_below(&tree.random, 12);
-    bool conifer = die < 4;
+    tree.conifer = die < 4;
     tree.leaves = LEAVES + (die < 9 ? 0 : die < 11 ? 3 : 6);
     if (die == 9 || die == 10) tree.bark = BIRCH_BARK;
-    if (b->counting) {
+    return tree;
+}
+
+/* A place on the ground of tree `i`. */
+static RtVec3d choose_foot(Tree *tree, const Ground *ground, uint64_t i) {
+    uint64_t column = i % ground->edge, row = i / ground->edge;
+    double x = square * ((double)column + between(tree, 0.1, 0.9));
+    double y = square * ((double)row + between(tree, 0.1, 0.9));
+    return rt_vec3d(x, y, height_at(ground->seed, x, y) - 0.3);
+}
+
+static void add_tree(Tree *tree, RtVec3d foot) {
+    if (tree->b->counting) {
         /* All trees of a kind have equally many triangles. */
         const uint64_t broadleaf = 12 + 4 * 8 + 16 * 6 + 64 * (6 + TWIG_LEAVES);
-        b->count += conifer ? 6 + WHORLS * BOUGHS * (3 + BOUGH_TUFTS) : broadleaf;
+        tree->b->count += tree->conifer ? 6 + WHORLS * BOUGHS * (3 + BOUGH_TUFTS) : broadleaf;
         return;
     }
-    uint64_t column = i % ground->edge, row = i / ground->edge;
-    double x = square * ((double)column + between(&tree, 0.1, 0.9));
-    double y = square * ((double)row + between(&tree, 0.1, 0.9));
-    RtVec3d foot = {x, y, height_at(ground->seed, x, y) - 0.3};
-    if (conifer) {
-        add_conifer(&tree, foot, between(&tree, 6, 12));
+    if (tree->conifer) {
+        add_conifer(tree, foot, between(tree, 6, 12));
         return;
     }
-    double lean_x = between(&tree, -0.12, 0.12), lean_y = between(&tree, -0.12, 0.12);
+    double lean_x = between(tree, -0.12, 0.12), lean_y = between(tree, -0.12, 0.12);
     RtVec3d lean = {lean_x, lean_y, 1};
-    add_branch(&tree, foot, rt_normalized(lean), between(&tree, 3.2, 5), 0);
+    add_branch(tree, foot, rt_normalized(lean), between(tree, 3.2, 5), 0);
+}
+
+static void make_parts(RtSceneBuilder *b, uint64_t seed, uint32_t parts) {
+    for (uint32_t i = 0; i < parts; i++) {
+        rt_build_begin_part(b);
+        rt_build_materials(b, materials, MATERIALS);
+        Tree tree = plant(b, seed, PART_STREAM | i);
+        add_tree(&tree, rt_vec3d(0, 0, 0));
+        rt_build_end_part(b);
+    }
+}
+
+/* The coarse ground may be lower than the hill, so it stands deeper. */
+static void add_instance(RtSceneBuilder *b, const Ground *ground, uint64_t i) {
+    Tree tree = {.random = rt_random(ground->seed, i)};
+    const uint32_t part = rt_random_below(&tree.random, b->part_count);
+    RtVec3d foot = b->counting ? rt_vec3d(0, 0, 0) : choose_foot(&tree, ground, i);
+    RtTurn turn = rt_turn(between(&tree, 0, 360));
+    double scale = between(&tree, 0.8, 1.25), c = scale * turn.cosine, s = scale * turn.sine;
+    const RtTransform to_world = {{{c, -s, 0, foot.x}, {s, c, 0, foot.y}, {0, 0, scale, foot.z - 0.3}}};
+    rt_build_instance(b, part, &to_world);
+}
+
+static uint64_t object_bytes(const RtValue *values) {
+    return values[INSTANCES].choice == RT_INSTANCES_ON ? RT_BUILTIN_OBJECT_BYTES : RT_BUILTIN_TRIANGLE_BYTES;
 }
 
 /* ---- the scene ---- */
 
 static void generate(RtSceneBuilder *b, const RtValue *values) {
-    Ground ground = {.seed = (uint64_t)values[SEED].i, .edge = 1};
+    const bool instances = values[INSTANCES].choice != RT_INSTANCES_OFF;
+    Ground ground = {.seed = (uint64_t)values[SEED].i, .edge = 1, .cells = instances ? 1 : 2};
     while ((uint64_t)ground.edge * ground.edge < (uint64_t)values[N].i) ground.edge++;
     double width = square * ground.edge, eye_y = -14;
     double eye_z = height_at(ground.seed, width / 2, eye_y) + 9;
@@ -207,7 +250,16 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
     b->transformed = true;
     rt_build_materials(b, materials, MATERIALS);
     add_ground(b, &ground);
-    for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) add_tree(b, &ground, i);
+    b->flattened = values[INSTANCES].choice == RT_INSTANCES_FLATTENED;
+    if (instances) make_parts(b, ground.seed, (uint32_t)values[PARTS].i);
+    for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) {
+        if (instances) {
+            add_instance(b, &ground, i);
+        } else {
+            Tree tree = plant(b, ground.seed, i);
+            add_tree(&tree, b->counting ? rt_vec3d(0, 0, 0) : choose_foot(&tree, &ground, i));
+        }
+    }
 }
 
 const RtBuiltin rt_builtin_forest = {
@@ -215,6 +267,6 @@ const RtBuiltin rt_builtin_forest = {
     .summary = "n trees on hilly ground: a million small triangles in all orientations",
     .source = "made to measure how builders scale",
     RT_PARAMS_OF(params),
-    .bytes_each = RT_BUILTIN_TRIANGLE_BYTES,
+    .object_bytes = object_bytes,
     .generate = generate,
 };

@@ -38,7 +38,9 @@ static RtVec3d rotate_from_z(RtVec3d v, RtVec3d towards) {
 
 /* balls: the sphereflake over a floor, 9^0 + ... + 9^size spheres and one polygon. Every sphere carries nine
  * of a third of its radius: six around its equator and three towards its tip. The root's tip is +Z, a child's
- * the direction in which it sits. Objects come depth first. All angles have known sines and cosines, so only
+ * the direction in which it sits. Objects come depth first. As instances, a sphere and nine instances of the
+ * level below are a part: it has as many spheres, but most of their directions differ, since the rotations
+ * of the levels add up to other turns about them. All angles have known sines and cosines, so only
  * + - * / sqrt are used. */
 enum { BALL_CHILDREN = 9 };
 
@@ -63,6 +65,29 @@ static void add_flake(RtSceneBuilder *b, const RtVec3d offsets[BALL_CHILDREN], R
     }
 }
 
+/* Part `level` is a flake of that many levels around the origin. */
+static void make_flakes(RtSceneBuilder *b, const RtVec3d offsets[BALL_CHILDREN], RtMaterial material,
+                        uint32_t levels) {
+    const double radius = 0.5;
+    for (uint32_t level = 0; level <= levels; level++) {
+        rt_build_begin_part(b);
+        rt_build_material(b, material);
+        rt_build_sphere(b, rt_vec3d(0, 0, 0), radius);
+        for (int i = 0; level > 0 && i < BALL_CHILDREN; i++) {
+            RtTransform to_world;
+            for (int a = 0; a < 3; a++) {
+                RtVec3d axis = {a == 0, a == 1, a == 2}, image = rotate_from_z(axis, offsets[i]);
+                for (int r = 0; r < 3; r++) to_world.m[r][a] = image.at[r] / 3;
+                to_world.m[a][3] = offsets[i].at[a] * radius * (1 + 1.0 / 3);
+            }
+            rt_build_instance(b, level - 1, &to_world);
+        }
+        rt_build_end_part(b);
+    }
+}
+
+enum { BALLS_SIZE, BALLS_INSTANCES };
+
 static void generate_balls(RtSceneBuilder *b, const RtValue *values) {
     static const RtVec3d lights[3] = {{4, 3, 2}, {1, -4, 4}, {-3, 1, 5}};
     static const RtVec3d floor[4] = {{12, 12, -0.5}, {-12, 12, -0.5}, {-12, -12, -0.5}, {12, -12, -0.5}};
@@ -73,13 +98,37 @@ static void generate_balls(RtSceneBuilder *b, const RtValue *values) {
     b->scene->camera.near = 0.01f;
     rt_build_material(b, rt_nff_material("floor", rt_vec3(1, 0.75f, 0.33f), 0.8f, 0, 100000, 0, 1));
     rt_build_polygon(b, floor, 4);
-    rt_build_material(b, rt_nff_material("balls", rt_vec3(1, 0.9f, 0.7f), 0.5f, 0.5f, 3.0827f, 0, 1));
-    add_flake(b, offsets, rt_vec3d(0, 0, 0), 0.5, rt_vec3d(0, 0, 1), values[0].i);
+    const RtMaterial shiny = rt_nff_material("balls", rt_vec3(1, 0.9f, 0.7f), 0.5f, 0.5f, 3.0827f, 0, 1);
+    const RtTransform identity = rt_transform_identity();
+    const int64_t levels = values[BALLS_SIZE].i;
+    b->flattened = values[BALLS_INSTANCES].choice == RT_INSTANCES_FLATTENED;
+    rt_build_material(b, shiny);
+    if (values[BALLS_INSTANCES].choice == RT_INSTANCES_OFF) {
+        add_flake(b, offsets, rt_vec3d(0, 0, 0), 0.5, rt_vec3d(0, 0, 1), levels);
+    } else {
+        make_flakes(b, offsets, shiny, (uint32_t)levels);
+        rt_build_instance(b, (uint32_t)levels, &identity);
+    }
 }
 
-SPD_SCENE(balls, "a sphereflake over a floor: reflective spheres of very different sizes, touching",
-          RT_SPD_SOURCE, NULL, 0, "4", 7, "1|3", "levels below the root: (9^(size+1) - 1) / 8 spheres",
-          "SPD: 7381 spheres")
+/* Parts have few objects, but all their arrays. */
+static uint64_t balls_bytes(const RtValue *values) {
+    return values[BALLS_INSTANCES].choice == RT_INSTANCES_ON ? 2048 : RT_BUILTIN_OBJECT_BYTES;
+}
+
+static const RtParam balls_params[] = {[BALLS_SIZE] = {"size", RT_INT("4", 1, 7, "1|3"),
+                                                       "levels below the root: (9^(size+1) - 1) / 8 spheres",
+                                                       "SPD: 7381 spheres"},
+                                       [BALLS_INSTANCES] = {RT_BUILTIN_INSTANCES}};
+
+const RtBuiltin rt_builtin_balls = {
+    .name = "balls",
+    .summary = "a sphereflake over a floor: reflective spheres of very different sizes, touching",
+    .source = RT_SPD_SOURCE,
+    RT_PARAMS_OF(balls_params),
+    .object_bytes = balls_bytes,
+    .generate = generate_balls,
+};
 
 /* gears: size^3 gears that mesh, some of glass, above a mirror. A gear has two faces, which are concave
  * polygons of four corners per tooth, and a rectangle under each edge between them. Angles are whole tenths

@@ -126,23 +126,42 @@ RT_TEST(too_large_a_scene_is_refused_with_the_size_that_fits) {
     }
 }
 
-/* It has as many objects as is told before it is made. */
+static uint32_t stored_objects(const RtScene *scene) {
+    uint32_t count = scene->geometry.object_count;
+    for (uint32_t i = 0; i < scene->part_count; i++) count += scene->parts[i]->geometry.object_count;
+    return count;
+}
+
+/* It has as many objects, with those of its parts, as is told before it is made. */
 static RtScene open_as_counted(const char *spec, const RtBuiltin **builtin, RtValue *values) {
     const char *colon = strchr(spec, ':');
     *builtin = rt_builtin_find(spec);
     assert_ok(rt_params_parse((*builtin)->params, (*builtin)->param_count, colon ? colon + 1 : NULL, "it",
                               values, error));
     RtScene scene = open_scene(spec);
-    assert_int_equal(rt_builtin_object_count(*builtin, values), scene.geometry.object_count);
+    assert_int_equal(rt_builtin_object_count(*builtin, values), stored_objects(&scene));
     return scene;
 }
 
 /* At other values than the defaults, too. */
 RT_TEST(objects_are_as_many_as_told_beforehand_and_take_no_more_memory_than_estimated) {
-    static const char *const more[] = {"random:n=20000",          "random:n=20000,shape=mixed",
-                                       "csg-field:n=65,least=64", "teapot:size=3",
-                                       "stadium:size=2",          "hall:size=3",
-                                       "forest:n=30,seed=5",      "city:size=3,seed=9"};
+    static const char *const more[] = {"random:n=20000",
+                                       "random:n=20000,shape=mixed",
+                                       "csg-field:n=65,least=64",
+                                       "teapot:size=3",
+                                       "stadium:size=2",
+                                       "hall:size=3",
+                                       "forest:n=30,seed=5",
+                                       "city:size=3,seed=9",
+                                       "balls:instances=on",
+                                       "balls:size=1,instances=on",
+                                       "balls:instances=flattened",
+                                       "city:size=3,instances=on",
+                                       "city:instances=flattened",
+                                       "city:size=1,instances=on,parts=1",
+                                       "forest:n=300,instances=on",
+                                       "forest:n=9,instances=flattened,parts=2",
+                                       "forest:n=1,instances=on,parts=64"};
     enum { MORE = sizeof more / sizeof more[0] };
     for (size_t i = 0; i < MORE || rt_builtin_at(i - MORE); i++) {
         const char *spec = i < MORE ? more[i] : rt_builtin_at(i - MORE)->name;
@@ -174,6 +193,8 @@ RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {
         assert_failed_allocations_are_reported(spec);
     }
     assert_failed_allocations_are_reported("random:n=100,shape=mixed");
+    assert_failed_allocations_are_reported("balls:size=1,instances=flattened");
+    assert_failed_allocations_are_reported("city:size=1,instances=on,parts=1");
 }
 
 RT_TESTS(builtin, NULL, NULL)

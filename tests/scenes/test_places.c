@@ -207,6 +207,9 @@ RT_TEST(random_scenes_depend_on_the_seed_alone) {
     assert_same("forest:n=20,seed=7", "forest:n=20,seed=8", false);
     assert_same("city:size=2,seed=7", "city:size=2,seed=7", true);
     assert_same("city:size=2,seed=7", "city:size=2,seed=8", false);
+    assert_same("city:size=2,instances=on,seed=7", "city:size=2,instances=on,seed=8", false);
+    assert_same("forest:n=2,instances=on,parts=2", "forest:n=2,instances=on,parts=3", false);
+    assert_same("forest:n=2", "forest:n=2,parts=3", true);
 }
 
 /* Trees of two kinds: 1036 triangles, or 986. */

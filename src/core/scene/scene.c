@@ -373,11 +373,11 @@ static RtStatus append_materials(const Append *a) {
         RtMaterial material = a->from->materials[i];
         if (!a->textures) material.texture = (RtTexture){0};
         uint32_t known = 0;
-        while (known < a->to->material_count && strcmp(a->to->materials[known].name, material.name) != 0)
+        while (known < a->to->material_count &&
+               memcmp(&a->to->materials[known], &material, sizeof material) != 0)
             known++;
         a->materials[i] = known;
-        if (known == a->to->material_count ||
-            memcmp(&a->to->materials[known], &material, sizeof material) != 0)
+        if (known == a->to->material_count)
             RT_TRY(rt_scene_add_material(a->to, &material, &a->materials[i], a->error));
     }
     return RT_OK;
