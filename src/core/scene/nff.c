@@ -387,7 +387,7 @@ static void save_object(const RtGeometry *g, RtRef ref, FILE *file) {
     case RT_SHAPE_POLYGON: save_polygon(g, index, file); break;
     case RT_SHAPE_TRIANGLE: save_triangle(g, index, file); break;
     case RT_SHAPE_INSTANCE: /* flattened earlier */
-    case RT_SHAPE_CSG: /* rejected earlier */
+    case RT_SHAPE_CSG:      /* rejected earlier */
     case RT_SHAPE_COUNT: break;
     }
     fprintf(file, "\n");

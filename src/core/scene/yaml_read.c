@@ -29,7 +29,7 @@ typedef struct Names {
 typedef struct Reader {
     RtYaml yaml;
     RtSceneOpener *open_named;
-    RtScene *scene;       /* that objects are added to: `whole`, or a part of it */
+    RtScene *scene; /* that objects are added to: `whole`, or a part of it */
     RtScene *whole;
     Names parts;          /* entry i is part i of the scene */
     Names materials;      /* entry i is material i of the scene */
@@ -83,7 +83,14 @@ static const Named *find_name(const Names *names, const char *name) {
 
 /* ---- what objects and solids share ---- */
 
-/* The `material` of an object; without one, the default material, created on first use. */
+/* The default material, created on first use. */
+static RtStatus need_default(Reader *r) {
+    const RtMaterial material = rt_default_material();
+    if (r->standard != UINT32_MAX) return RT_OK;
+    return rt_scene_add_material(r->scene, &material, &r->standard, r->error);
+}
+
+/* The `material` of an object; without one, the default material. */
 static RtStatus find_material(Reader *r, const RtYamlNode *object, uint32_t *index) {
     const RtYamlNode *node = rt_yaml_get(&r->yaml, object, "material");
     const char *name = "default";
@@ -92,10 +99,7 @@ static RtStatus find_material(Reader *r, const RtYamlNode *object, uint32_t *ind
     if (node && !found)
         return rt_yaml_fail(&r->yaml, node, "there is no material '%s': add it to the list of materials",
                             name);
-    if (!found && r->standard == UINT32_MAX) {
-        RtMaterial material = rt_default_material();
-        RT_TRY(rt_scene_add_material(r->scene, &material, &r->standard, r->error));
-    }
+    if (!found) RT_TRY(need_default(r));
     *index = found ? found->index : r->standard;
     return RT_OK;
 }
@@ -627,8 +631,8 @@ static RtStatus find_part(Reader *r, const RtYamlNode *entry, uint32_t *part) {
     }
     const RtYamlNode *at = rt_yaml_get(&r->yaml, entry, "part");
     if (found)
-        return rt_yaml_fail(&r->yaml, at, "the part '%s' is not complete here: a part contains earlier parts only",
-                            name);
+        return rt_yaml_fail(&r->yaml, at,
+                            "the part '%s' is not complete here: a part contains earlier parts only", name);
     for (uint32_t i = 0; i < r->parts.count && count < 64; i++) known[count++] = r->parts.all[i].name;
     char suggestion[RT_MAX_SUGGESTION];
     rt_suggest(name, known, count, suggestion);
@@ -646,7 +650,8 @@ static RtStatus add_instance(Reader *r, const RtYamlNode *entry) {
     if (rt_yaml_get(y, entry, "material")) RT_TRY(find_material(r, entry, &material));
     const RtYamlNode *place = rt_yaml_get(y, entry, "place");
     if (place && rt_yaml_get(y, entry, "transform"))
-        return rt_yaml_fail(y, place, "`place`, a matrix, and `transform`, a list of steps, say the same: give one");
+        return rt_yaml_fail(y, place,
+                            "`place`, a matrix, and `transform`, a list of steps, say the same: give one");
     RT_TRY(read_transform(r, entry, r->scene->offset, &transform, &given));
     if (place) RT_TRY(rt_yaml_doubles(y, entry, "place", 12, &transform.m[0][0]));
     for (int a = 0; a < 3 && place; a++) transform.m[a][3] -= r->scene->offset.at[a];
@@ -661,8 +666,8 @@ static RtStatus add_content(Reader *r, const RtYamlNode *from) {
     r->yaml.offset = r->scene->offset;
     if (!objects && !instances)
         return rt_yaml_fail(&r->yaml, from, "`objects` or `instances` are missing: there is nothing to see");
-    RT_TRY(rt_yaml_list(&r->yaml, objects, NULL, instances ? 0 : 1, UINT32_MAX, "objects"));
-    RT_TRY(rt_yaml_list(&r->yaml, instances, NULL, 0, UINT32_MAX, "instances"));
+    RT_TRY(rt_yaml_list(&r->yaml, instances, NULL, rt_yaml_count(objects) ? 0 : 1, UINT32_MAX, "instances"));
+    RT_TRY(rt_yaml_list(&r->yaml, objects, NULL, rt_yaml_count(instances) ? 0 : 1, UINT32_MAX, "objects"));
     for (const RtYamlNode *n = rt_yaml_first(objects); n != rt_yaml_end(objects); n += n->size)
         RT_TRY(add_object(r, n));
     for (const RtYamlNode *n = rt_yaml_first(instances); n != rt_yaml_end(instances); n += n->size)
@@ -670,31 +675,43 @@ static RtStatus add_content(Reader *r, const RtYamlNode *from) {
     return RT_OK;
 }
 
-static RtStatus read_part(Reader *r, const RtYamlNode *entry, RtScene *part) {
+/* Gives a part the materials of the scene, at the same indices. Origins of textures do not move with the
+ * scene: they are places in the part. */
+static RtStatus add_materials_of(Reader *r, RtScene *part) {
     uint32_t same;
+    r->yaml.offset = nowhere;
+    for (uint32_t i = 0; i < r->whole->material_count; i++) {
+        RtMaterial material = r->whole->materials[i];
+        const Named *named = has_offset(r) ? find_name(&r->materials, material.name) : NULL;
+        const RtYamlNode *texture = named ? rt_yaml_get(&r->yaml, named->node, "texture") : NULL;
+        if (texture) material.texture.origin = rt_vec3(0, 0, 0);
+        if (texture) RT_TRY(rt_yaml_position(&r->yaml, texture, "origin", &material.texture.origin));
+        RT_TRY(rt_scene_add_material(part, &material, &same, r->error));
+    }
+    return RT_OK;
+}
+
+static RtStatus read_part(Reader *r, const RtYamlNode *entry, RtScene *part) {
     const char *name = "";
     RT_TRY(rt_yaml_text(&r->yaml, entry, "name", RT_MAX_NAME - 1, &name));
     memcpy(part->name, name, strlen(name) + 1);
+    RT_TRY(add_materials_of(r, part));
     part->warnings = r->whole->warnings; /* lent */
     r->scene = part;
-    RtStatus status = RT_OK;
-    for (uint32_t i = 0; i < r->whole->material_count && status == RT_OK; i++)
-        status = rt_scene_add_material(part, &r->whole->materials[i], &same, r->error);
-    if (status == RT_OK) status = add_content(r, entry);
+    RtStatus status = add_content(r, entry);
     r->scene = r->whole;
     r->whole->warnings = part->warnings;
     part->warnings = (RtWarnings){0};
     return status;
 }
 
-/* A part has the materials of the list at the same indices. */
+/* The default material comes before the parts, so that these share it. */
 static RtStatus add_parts(Reader *r, const RtYamlNode *list) {
     RT_TRY(read_names(r, list, "name objects? instances?", RT_MAX_NAME - 1, "parts", &r->parts));
+    if (r->parts.count > 0 && !find_name(&r->materials, "default")) RT_TRY(need_default(r));
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
         RtScene part = {0};
-        const uint32_t standard = r->standard;
         RtStatus status = read_part(r, n, &part);
-        r->standard = standard;
         if (status != RT_OK) {
             rt_scene_clear(&part);
             return status;
@@ -783,7 +800,9 @@ static RtStatus build(Reader *r) {
     const RtYaml *y = &r->yaml;
     const RtYamlNode *root = y->nodes;
     RT_TRY(rt_yaml_check_format(y));
-    RT_TRY(rt_yaml_keys(y, root, "camera? background? ambient? lights? materials? solids? parts? objects? instances? format?"));
+    RT_TRY(rt_yaml_keys(
+        y, root,
+        "camera? background? ambient? lights? materials? solids? parts? objects? instances? format?"));
     const RtYamlNode *camera = rt_yaml_get(y, root, "camera");
     r->yaml.offset = r->scene->offset;
     if (camera) RT_TRY(set_camera(r, camera));
@@ -806,14 +825,16 @@ static RtStatus load(Reader *r) {
 }
 
 RtStatus rt_yaml_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
-    Reader r = {.open_named = open_named, .scene = scene, .whole = scene, .standard = UINT32_MAX, .error = error};
+    Reader r = {
+        .open_named = open_named, .scene = scene, .whole = scene, .standard = UINT32_MAX, .error = error};
     RT_TRY(rt_yaml_open(&r.yaml, path, error));
     return load(&r);
 }
 
 RtStatus rt_yaml_load_text(const char *name, const char *text, RtSceneOpener *open_named, RtScene *scene,
                            RtError *error) {
-    Reader r = {.open_named = open_named, .scene = scene, .whole = scene, .standard = UINT32_MAX, .error = error};
+    Reader r = {
+        .open_named = open_named, .scene = scene, .whole = scene, .standard = UINT32_MAX, .error = error};
     RT_TRY(rt_yaml_parse(&r.yaml, name, text, strlen(text), error));
     return load(&r);
 }
