@@ -521,10 +521,8 @@ static void add_texture(XXH3_state_t *state, const RtTexture *texture) {
     ADD(texels->rgb, 3 * (size_t)texels->width * texels->height);
 }
 
-uint64_t rt_scene_fingerprint(const RtScene *scene) {
+static void add_objects(XXH3_state_t *state, const RtScene *scene) {
     const RtGeometry *g = &scene->geometry;
-    XXH3_state_t whole, *state = &whole;
-    XXH3_64bits_reset(state);
     ADD(g->objects, g->object_count);
     ADD(scene->material_of, g->object_count);
     ADD(g->spheres, g->sphere_count);
@@ -542,10 +540,13 @@ uint64_t rt_scene_fingerprint(const RtScene *scene) {
         ADD(&g->instances[i].to_world, 1);
         ADD(&g->instances[i].part, 1);
     }
-    for (uint32_t i = 0; i < scene->part_count; i++) {
-        const uint64_t part = rt_scene_fingerprint(scene->parts[i]);
-        ADD(&part, 1);
-    }
+}
+
+uint64_t rt_scene_fingerprint(const RtScene *scene) {
+    XXH3_state_t whole, *state = &whole;
+    XXH3_64bits_reset(state);
+    add_objects(state, scene);
+    for (uint32_t i = 0; i < scene->part_count; i++) add_objects(state, scene->parts[i]);
     for (uint32_t i = 0; i < scene->material_count; i++) { /* all but the name */
         XXH3_64bits_update(state, &scene->materials[i].color,
                            offsetof(RtMaterial, texture) - offsetof(RtMaterial, color));

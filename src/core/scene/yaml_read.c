@@ -656,7 +656,7 @@ static RtStatus add_instance(Reader *r, const RtYamlNode *entry) {
     if (place) RT_TRY(rt_yaml_doubles(y, entry, "place", 12, &transform.m[0][0]));
     for (int a = 0; a < 3 && place; a++) transform.m[a][3] -= r->scene->offset.at[a];
     RtStatus status = rt_scene_add_instance(r->scene, r->whole, part, &transform, material, r->error);
-    return rt_yaml_place(y, status, entry, NULL);
+    return rt_yaml_place(y, status, entry, place ? "place" : "transform");
 }
 
 /* The objects and instances of the scene, or of a part. */
