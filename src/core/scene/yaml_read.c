@@ -665,7 +665,8 @@ static RtStatus add_content(Reader *r, const RtYamlNode *from) {
                      *instances = rt_yaml_get(&r->yaml, from, "instances");
     r->yaml.offset = r->scene->offset;
     if (!objects && !instances)
-        return rt_yaml_fail(&r->yaml, from, "`objects` or `instances` are missing: there is nothing to see");
+        return rt_yaml_fail(&r->yaml, from,
+                            "'objects' is missing: a scene and a part have objects, instances or both");
     RT_TRY(rt_yaml_list(&r->yaml, instances, NULL, rt_yaml_count(objects) ? 0 : 1, UINT32_MAX, "instances"));
     RT_TRY(rt_yaml_list(&r->yaml, objects, NULL, rt_yaml_count(instances) ? 0 : 1, UINT32_MAX, "objects"));
     for (const RtYamlNode *n = rt_yaml_first(objects); n != rt_yaml_end(objects); n += n->size)
