@@ -268,6 +268,7 @@ RT_TEST(recentring_moves_instances_but_not_parts) {
     assert_true(b->geometry.instances[0].to_world.m[0][3] == 1);
     assert_true(near.materials[near.material_of[0]].texture.origin.x == -499999.9f);
     assert_true(near.materials[a->material_of[0]].texture.origin.x == 0.1f);
+    assert_int_equal(a->geometry.forest.set.solids[0].material, a->material_of[0]);
 }
 
 /* ---- memory ---- */

@@ -272,7 +272,7 @@ RtStatus rt_scene_add_part(RtScene *scene, RtScene *part, RtError *error) {
     if (status == RT_OK) status = move_materials(scene, part, error);
     if (status == RT_OK)
         status =
-            rt_append(&scene->parts, &scene->part_count, &scene->part_capacity, &kept, sizeof kept, error);
+            rt_append(&scene->parts, &scene->part_count, &scene->part_capacity, &kept, sizeof(void *), error);
     if (status == RT_OK) {
         *kept = *part;
         *part = (RtScene){0};

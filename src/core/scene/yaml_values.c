@@ -147,11 +147,11 @@ RtStatus rt_yaml_camera(const RtYaml *y, const RtYamlNode *n, RtCamera *camera) 
     return rt_yaml_place(y, status, n, key);
 }
 
-RtStatus rt_yaml_color(const RtYaml *y, const RtYamlNode *scene, const char *key, RtVec3 *color) {
-    RT_TRY(rt_yaml_point(y, scene, key, color));
+RtStatus rt_yaml_color(const RtYaml *y, const RtYamlNode *node, const char *key, RtVec3 *color) {
+    RT_TRY(rt_yaml_point(y, node, key, color));
     if (color->x >= 0 && color->y >= 0 && color->z >= 0) return RT_OK;
     RtStatus status = rt_fail(y->error, RT_BAD_INPUT, "a colour must not be negative: [red, green, blue]");
-    return rt_yaml_place(y, status, scene, key);
+    return rt_yaml_place(y, status, node, key);
 }
 
 RtStatus rt_yaml_lights(const RtYaml *y, const RtYamlNode *list, RtScene *scene) {

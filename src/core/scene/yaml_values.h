@@ -18,7 +18,7 @@ static inline const char *rt_yaml_key_of(const RtYaml *yaml, const RtYamlNode *v
 RtStatus rt_yaml_transform(const RtYaml *yaml, const RtYamlNode *object, RtVec3d offset, bool wide,
                            RtTransform *transform, const RtTransform **given);
 
-RtStatus rt_yaml_sphere(const RtYaml *yaml, const RtYamlNode *sphere, RtVec3 *center, float *radius);
+RtStatus rt_yaml_sphere(const RtYaml *yaml, const RtYamlNode *node, RtVec3 *center, float *radius);
 /* A cone, or a cylinder. */
 RtStatus rt_yaml_cone(const RtYaml *yaml, const RtYamlNode *node, RtCone *cone);
 /* Three positions, or normals. */
