@@ -93,6 +93,12 @@ static void write_painted_mesh(void) {
                "f 1/1 2/2 3/3\n");
 }
 
+RT_TEST(every_prefix_of_a_scene_of_instances_is_read_or_refused) {
+    write_painted_mesh();
+    for (size_t length = 0; length < sizeof instanced; length += RT_SHARE(1, 7))
+        assert_read_or_refused(RT_TEST_FOLDER "/scene.yaml", instanced, length);
+}
+
 /* The caller frees it. */
 static char *saved(const RtScene *scene) {
     RtMemoryFile file;
