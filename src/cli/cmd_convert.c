@@ -10,7 +10,7 @@
 
 typedef struct Options {
     const char *in, *out;
-    bool force, recentre;
+    bool force, flatten, recentre;
     RtVec3d offset; /* x is NaN: the centre of the scene */
 } Options;
 
@@ -45,6 +45,7 @@ static void finish(void *options, struct argp_state *state) {
 
 static const RtOption options[] = {
     {"force", 'f', NULL, RT_TO_FLAG(force), "Replace OUT if it exists"},
+    {"flatten", 0, NULL, RT_TO_FLAG(flatten), "Write instances as copies of their parts' objects"},
     {"recentre", 0, "X,Y,Z", RT_TO_TAKE_OPTIONAL(take_offset),
      "Subtract X,Y,Z, or the centre of the scene, rounded to few bits, from all "
      "coordinates before they are rounded to float32"},
@@ -75,16 +76,31 @@ static RtStatus move_rays(const Options *o, RtError *error) {
     return status;
 }
 
-/* Textures are YAML's alone. */
-static RtStatus warn_textures(RtScene *scene, const char *out, RtError *error) {
-    uint32_t textures = 0;
+/* Textures and instances are YAML's alone. */
+static RtStatus warn_losses(RtScene *scene, const char *out, RtError *error) {
+    uint32_t textures = 0, ids = rt_geometry_id_count(&scene->geometry);
     for (uint32_t i = 0; i < scene->material_count; i++)
         textures += scene->materials[i].texture.kind != RT_TEXTURE_NONE;
-    if (textures == 0 || rt_ends_in(out, ".yaml") || rt_ends_in(out, ".yml")) return RT_OK;
+    if (rt_scene_keeps_instances(out)) return RT_OK;
     scene->warnings.first = scene->warnings.count;
+    if (scene->geometry.instance_count > 0)
+        RT_TRY(rt_warn_at(&scene->warnings, out, 0, error,
+                          "instances, which only .yaml keeps, become copies: %u object%s in all", ids,
+                          rt_plural(ids)));
+    if (textures == 0) return RT_OK;
     return rt_warn_at(&scene->warnings, out, 0, error,
                       "the textures of %u material%s are left out, which only .yaml keeps", textures,
                       rt_plural(textures));
+}
+
+static RtStatus flatten(RtScene *scene, RtError *error) {
+    RtScene flat;
+    RT_TRY(rt_scene_flatten(scene, &flat, error));
+    flat.warnings = scene->warnings;
+    scene->warnings = (RtWarnings){0};
+    rt_scene_clear(scene);
+    *scene = flat;
+    return RT_OK;
 }
 
 RtStatus rt_command_convert(int argc, char **argv, RtError *error) {
@@ -98,7 +114,8 @@ RtStatus rt_command_convert(int argc, char **argv, RtError *error) {
     if (rt_ends_in(o.in, ".npy")) return move_rays(&o, error);
     RT_TRY(o.recentre ? rt_scene_load(o.in, rt_builtin_open, &o.offset, &scene, error)
                       : rt_scene_open(o.in, &scene, error));
-    RT_TRY(warn_textures(&scene, o.out, error));
+    if (o.flatten) RT_TRY(flatten(&scene, error));
+    RT_TRY(warn_losses(&scene, o.out, error));
     rt_cli_tell_warnings(&scene);
     RT_TRY(rt_scene_save(&scene, o.out, error));
     if (o.recentre)

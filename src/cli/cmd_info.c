@@ -21,8 +21,15 @@ typedef struct Counts {
     uint32_t zero_area;  /* triangles */
     double area, volume; /* of all triangles; the volume that they enclose if they are closed,
                           * counter-clockwise from outside */
+    uint64_t instances;  /* of the scene and of its parts */
+    uint64_t *copies;    /* [part_count] of each part, in the flattened scene; owned */
+    uint64_t flat_bytes; /* estimate for it */
     char fingerprint[17];
 } Counts;
+
+static void clear_counts(Counts *counts) {
+    rt_free(counts->copies);
+}
 
 static void take_extents(void *options, const char *text, struct argp_state *state) {
     Options *o = options;
@@ -58,6 +65,23 @@ static RtStatus save_nodes(const Options *o, const RtScene *scene, RtError *erro
     RT_TRY(rt_accel_open(o->accel, scene, &accel, error));
     RT_TRY(rt_nodes_save(accel, o->nodes, &count, error));
     if (!o->json) printf("%s: %u node%s of %s\n\n", o->nodes, count, rt_plural(count), o->accel);
+    return RT_OK;
+}
+
+/* Parts contain earlier parts only: the copies of one are known before those in it. */
+static RtStatus count_copies(const RtScene *scene, Counts *counts, RtError *error) {
+    const uint32_t parts = scene->part_count;
+    counts->copies = rt_alloc(parts, sizeof *counts->copies);
+    if (!counts->copies) return rt_fail_memory(error, "counts of parts", parts * sizeof *counts->copies);
+    counts->flat_bytes = rt_scene_bytes(scene);
+    for (uint32_t i = parts + 1; i-- > 0;) {
+        const RtScene *from = i == parts ? scene : scene->parts[i];
+        const uint64_t copies = i == parts ? 1 : counts->copies[i];
+        counts->instances += from->geometry.instance_count;
+        for (uint32_t k = 0; k < from->geometry.instance_count; k++)
+            counts->copies[from->geometry.instances[k].part] += copies;
+        if (i < parts) counts->flat_bytes += (copies - 1) * rt_scene_bytes(from);
+    }
     return RT_OK;
 }
 
@@ -101,17 +125,27 @@ static void print_material(const RtMaterial *m) {
     if (texture_of(m)) printf("  %-13s texture %s, size %.4g\n", "", texture_of(m), (double)m->texture.size);
 }
 
+enum { SHOWN = 8 }; /* parts, materials and lights */
+
+static void print_parts(const RtScene *scene, const Counts *counts) {
+    if (scene->part_count == 0) return;
+    printf("parts: %u; instances: %" PRIu64 ", nested in %u level%s; memory as copies: about %.1f MB\n",
+           scene->part_count, counts->instances, scene->geometry.nesting, rt_plural(scene->geometry.nesting),
+           (double)counts->flat_bytes / 1e6);
+    for (uint32_t i = 0; i < scene->part_count && i < SHOWN; i++) {
+        const uint32_t objects = rt_geometry_id_count(&scene->parts[i]->geometry);
+        printf("  %-13s %u object%s, %" PRIu64 " cop%s\n", scene->parts[i]->name, objects, rt_plural(objects),
+               counts->copies[i], counts->copies[i] == 1 ? "y" : "ies");
+    }
+    if (scene->part_count > SHOWN) printf("  ... (--json lists all)\n");
+}
+
 static void print_info(const RtScene *scene, const Counts *counts) {
-    enum { SHOWN = 8 }; /* materials and lights */
     const RtGeometry *g = &scene->geometry;
     printf("%s\n\nobjects: %u\n", scene->name, rt_geometry_id_count(g));
     for (int i = 0; i < RT_SHAPE_COUNT; i++) {
         if (counts->of_shape[i]) printf("  %-13s %u\n", rt_shape_name((RtShape)i), counts->of_shape[i]);
     }
-    for (uint32_t i = 0; i < scene->part_count && i < SHOWN; i++)
-        printf("  in part       %s: %u\n", scene->parts[i]->name,
-               rt_geometry_id_count(&scene->parts[i]->geometry));
-    if (scene->part_count > SHOWN) printf("  ... (%u parts)\n", scene->part_count);
     if (g->csg_count) printf("  made of solids: %u\n", g->forest.set.solid_count);
     if (g->vertex_normal_count)
         printf("  with vertex normals: %u triangle%s\n", g->vertex_normal_count,
@@ -120,6 +154,7 @@ static void print_info(const RtScene *scene, const Counts *counts) {
         printf("  area of triangles: %.6g; volume in them, if closed: %.6g\n", counts->area, counts->volume);
     if (counts->zero_area)
         printf("  without area, never hit: %u triangle%s\n", counts->zero_area, rt_plural(counts->zero_area));
+    print_parts(scene, counts);
     printf(g->object_count > 0 ? "bounds:\n" : "bounds: none\n");
     if (g->object_count > 0) {
         print_vector("from", g->box.lo);
@@ -152,6 +187,18 @@ static json_t *material_json(const RtMaterial *m) {
                      (double)m->ior, "texture", texture_of(m));
 }
 
+static json_t *parts_json(const RtScene *scene, const Counts *counts) {
+    json_t *parts = json_array();
+    for (uint32_t i = 0; i < scene->part_count; i++) {
+        const RtGeometry *g = &scene->parts[i]->geometry;
+        json_array_append_new(parts, json_pack("{s:s, s:I, s:I, s:I}", "name", scene->parts[i]->name,
+                                               "objects", (json_int_t)rt_geometry_id_count(g), "instances",
+                                               (json_int_t)g->instance_count, "copies",
+                                               (json_int_t)counts->copies[i]));
+    }
+    return parts;
+}
+
 static json_t *info_json(const RtScene *scene, const Counts *counts) {
     const RtGeometry *g = &scene->geometry;
     json_t *shapes = json_object(), *materials = json_array(), *lights = json_array();
@@ -175,7 +222,7 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
     }
     return json_pack(
         "{s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:f, s:f, s:o, s:o, s:o, s:o, s:o,"
-        " s:{s:o, s:o, s:o, s:f, s:f, s:I, s:I}, s:I, s:o}",
+        " s:{s:o, s:o, s:o, s:f, s:f, s:I, s:I}, s:o, s:I, s:I, s:I, s:I, s:o}",
         "scene", scene->name, "fingerprint", counts->fingerprint, "objects",
         (json_int_t)rt_geometry_id_count(g), "shapes", shapes, "solids",
         (json_int_t)g->forest.set.solid_count, "triangles_with_normals", (json_int_t)g->vertex_normal_count,
@@ -184,8 +231,10 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
         rt_cli_vector_json(scene->ambient), "background", rt_cli_vector_json(scene->background), "camera",
         "from", rt_cli_vector_json(camera->from), "at", rt_cli_vector_json(camera->at), "up",
         rt_cli_vector_json(camera->up), "fov", (double)camera->fov, "near", (double)camera->near, "width",
-        (json_int_t)camera->width, "height", (json_int_t)camera->height, "bytes",
-        (json_int_t)rt_scene_bytes(scene), "warnings", warnings);
+        (json_int_t)camera->width, "height", (json_int_t)camera->height, "parts", parts_json(scene, counts),
+        "instances", (json_int_t)counts->instances, "nesting", (json_int_t)g->nesting, "bytes",
+        (json_int_t)rt_scene_bytes(scene), "estimated_bytes_of_copies", (json_int_t)counts->flat_bytes,
+        "warnings", warnings);
 }
 
 /* ---- the command ---- */
@@ -205,7 +254,9 @@ RtStatus rt_command_info(int argc, char **argv, RtError *error) {
     rt_cli_parse(&rt_info_syntax, argc, argv, &o);
     if (o.json) RT_TRY(rt_cli_check_json_name(o.scene, error));
     RT_TRY(rt_cli_open_scene(o.scene, &scene, error));
-    const Counts counts = count(&scene);
+    RT_OWNED(Counts, counts, clear_counts);
+    counts = count(&scene);
+    RT_TRY(count_copies(&scene, &counts, error));
     if (o.nodes) RT_TRY(save_nodes(&o, &scene, error));
     if (o.extents) RT_TRY(rt_extents_table(&table, &scene, o.every_slabs, o.rays, o.seed, error));
     if (o.json) {

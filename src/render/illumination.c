@@ -52,9 +52,8 @@ RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit, RtHitMem
     const RtMaterial *material = place.material;
     if (!material)
         material =
-            &place.scene
-                 ->materials[normals.solid == RT_NO_SOLID ? place.scene->material_of[place.object]
-                                                          : g->forest.set.solids[normals.solid].material];
+            &scene->materials[normals.solid == RT_NO_SOLID ? place.scene->material_of[place.object]
+                                                           : g->forest.set.solids[normals.solid].material];
     const RtVec3 color = material->texture.kind == RT_TEXTURE_NONE
                              ? material->color
                              : textured_color(place.scene, material, place.object,

@@ -62,11 +62,10 @@ static RtStatus load_recorded(Run *run, RtError *error) {
     for (uint32_t i = 0; i < v->spec_count; i++) {
         if (!v->specs[i].recorded) continue;
         if (run->scenes[0].geometry.instance_count > 0)
-            return rt_fail(
-                error, RT_BAD_INPUT,
-                "%s: recorded hits are judged on scenes without instances: `raytally convert` writes one "
-                "of copies",
-                run->verify->scenes[0]);
+            return rt_fail(error, RT_BAD_INPUT,
+                           "%s: recorded hits are judged on scenes without instances: `raytally convert "
+                           "--flatten` writes one of copies",
+                           run->verify->scenes[0]);
         RT_TRY(rt_hits_load(v->specs[i].spec, v->rays.count, run->scenes[0].geometry.object_count,
                             &run->recorded, error));
         for (uint64_t k = 0; k < v->rays.count; k++) {

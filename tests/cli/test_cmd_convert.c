@@ -43,6 +43,33 @@ RT_TEST(convert_keeps_textures_in_yaml_and_says_that_nff_loses_them) {
     assert_int_equal(convert("--force --strict " OUT "-in.yaml " OUT ".nff"), 2);
 }
 
+RT_TEST(convert_keeps_instances_in_yaml_and_says_that_others_get_copies) {
+    static const char instances[] =
+        "parts: [{name: leaf, objects: [triangle: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}]},\n"
+        "  {name: twig, instances: [{part: leaf}, {part: leaf, transform: [{translate: [0, 0, 1]}]}]}]\n"
+        "instances: [{part: twig}, {part: twig, transform: [{translate: [0, 0, 2]}]}]\n";
+    assert_ok(rt_file_write(OUT "-in.yaml", instances, strlen(instances), error));
+    assert_said(raytally_to("2>" OUT ".txt", "convert --force %s", OUT "-in.yaml " OUT ".yaml"), 0,
+                OUT ".txt", "");
+    OWNED_SCENE in = open_scene(OUT "-in.yaml"), out = open_scene(OUT ".yaml");
+    assert_true(rt_scene_fingerprint(&in) == rt_scene_fingerprint(&out));
+    assert_said(raytally_to(">" OUT ".txt", "info " OUT ".yaml"), 0, OUT ".txt",
+                "parts: 2; instances: 4, nested in 2 levels; memory as copies: about 0.0 MB\n"
+                "  leaf          1 object, 4 copies\n"
+                "  twig          2 objects, 2 copies\n");
+    assert_said(raytally_to(">" OUT ".txt", "info --json " OUT ".yaml"), 0, OUT ".txt",
+                "\"instances\": 4,\n  \"nesting\": 2,\n");
+    assert_said(raytally_to("2>" OUT ".txt", "convert --force " OUT ".yaml " OUT ".obj"), 0, OUT ".txt",
+                "instances, which only .yaml keeps, become copies: 4 objects in all");
+    assert_int_equal(convert("--force --strict " OUT ".yaml " OUT ".obj"), 2);
+    assert_int_equal(convert("--force --strict --flatten " OUT ".yaml " OUT ".obj"), 0);
+    assert_int_equal(convert("--force --flatten " OUT ".yaml " OUT "-flat.yaml"), 0);
+    OWNED_SCENE flat = open_scene(OUT "-flat.yaml"), mesh = open_scene(OUT ".obj");
+    assert_int_equal(flat.part_count, 0);
+    assert_memory_equal(flat.geometry.triangles, mesh.geometry.triangles, 4 * sizeof(RtTriangle));
+    for (int i = 0; i < 4; i++) assert_true(flat.geometry.triangles[i].v[0].z == (float)i);
+}
+
 RT_TEST(convert_refuses_and_leaves_nothing_behind) {
     remove(OUT ".ply");
     assert_int_equal(convert("balls:size=1"), 2);

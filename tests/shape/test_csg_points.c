@@ -244,7 +244,7 @@ static void check_tree(const RtCsgForest *forest, const RtCsg *tree, uint64_t ra
     Model m = {.forest = *forest, .tree = *tree};
     Copier copier = {&m.builder, forest};
     char *formula;
-    assert_ok(rt_formula_write(forest, tree, &formula, error));
+    assert_ok(rt_formula_write(forest, tree, 0, &formula, error));
     assert_ok(rt_formula_read(formula, &m.builder, copy_solid, &copier, &m.root, error));
     for (uint64_t i = 0; i < rays; i++) {
         RtRay ray = rt_sphere_chord(&tree->ball, random);

@@ -165,7 +165,8 @@ static uint32_t *push_operand(uint32_t *top, uint32_t branch, bool enclosed) {
     return top;
 }
 
-static void write_branches(const Branch *branches, uint32_t root, uint32_t *pending, FILE *out) {
+static void write_branches(const Branch *branches, uint32_t root, uint32_t first, uint32_t *pending,
+                           FILE *out) {
     uint32_t *top = push_operand(pending, root, false);
     while (top > pending) {
         const uint32_t next = *--top;
@@ -175,7 +176,7 @@ static void write_branches(const Branch *branches, uint32_t root, uint32_t *pend
         }
         const Branch *branch = &branches[next];
         if (branch->sign == LEAF) {
-            fprintf(out, "s%u", branch->left);
+            fprintf(out, "s%u", first + branch->left);
             continue;
         }
         const char left = branches[branch->left].sign;
@@ -187,7 +188,8 @@ static void write_branches(const Branch *branches, uint32_t root, uint32_t *pend
     }
 }
 
-RtStatus rt_formula_write(const RtCsgForest *forest, const RtCsg *tree, char **formula, RtError *error) {
+RtStatus rt_formula_write(const RtCsgForest *forest, const RtCsg *tree, uint32_t first, char **formula,
+                          RtError *error) {
     RT_ARENA(memory);
     const size_t solids = tree->solid_count;
     Branch *branches = rt_arena_alloc_unset(&memory, 2 * solids, sizeof *branches);
@@ -196,7 +198,7 @@ RtStatus rt_formula_write(const RtCsgForest *forest, const RtCsg *tree, char **f
     *formula = NULL;
     RT_TRY(rt_arena_check(&memory, "a formula", error));
     RT_TRY(rt_memory_file_open(&text, error));
-    write_branches(branches, grow(forest, tree, branches, stack), stack, text.file);
+    write_branches(branches, grow(forest, tree, branches, stack), first, stack, text.file);
     RT_TRY(rt_memory_file_close(&text, "a formula", error));
     *formula = text.data;
     return RT_OK;

@@ -28,8 +28,9 @@ bool rt_formula_is_name(const char *name);
 RtStatus rt_formula_read(const char *formula, RtCsgBuilder *builder, RtFormulaLookup *lookup, void *context,
                          RtCsgTerm *term, RtError *error);
 
-/* The formula of a tree; solid i of the forest's set is called s<i>. The caller owns *formula (rt_free).
- * Parsing it with the same solids makes the same tree. */
-RtStatus rt_formula_write(const RtCsgForest *forest, const RtCsg *tree, char **formula, RtError *error);
+/* The formula of a tree; solid i of the forest's set is called s<first + i>. The caller owns *formula
+ * (rt_free). Parsing it with the same solids makes the same tree. */
+RtStatus rt_formula_write(const RtCsgForest *forest, const RtCsg *tree, uint32_t first, char **formula,
+                          RtError *error);
 
 #endif

@@ -125,7 +125,13 @@ RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtVec3d *off
     return load(path, open_named, offset ? *offset : none, true, scene, error);
 }
 
-/* No format has instances: they are written as copies. */
+bool rt_scene_keeps_instances(const char *path) {
+    size_t format;
+    return rt_find_format(path, written_extension, "written", &format, NULL) == RT_OK &&
+           format < FORMAT_COUNT && formats[format].save == rt_yaml_save;
+}
+
+/* The format has no instances: they are written as copies. */
 static RtStatus save_flat(const RtScene *scene, const char *path, RtError *error) {
     RtScene flat;
     RT_TRY(rt_scene_flatten(scene, &flat, error));
@@ -136,8 +142,9 @@ static RtStatus save_flat(const RtScene *scene, const char *path, RtError *error
 
 RtStatus rt_scene_save(const RtScene *scene, const char *path, RtError *error) {
     size_t format;
-    if (scene->geometry.instance_count > 0) return save_flat(scene, path, error);
     RT_TRY(rt_find_format(path, written_extension, "written", &format, error));
+    if (scene->geometry.instance_count > 0 && !rt_scene_keeps_instances(path))
+        return save_flat(scene, path, error);
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));
     RtStatus status = format < FORMAT_COUNT ? formats[format].save(scene, output.file, error)

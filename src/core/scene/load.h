@@ -22,6 +22,9 @@ RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtVec3d *off
  * cannot represent an object of the scene. */
 RtStatus rt_scene_save(const RtScene *scene, const char *path, RtError *error);
 
+/* True for YAML: other formats get instances as copies, and no textures. */
+bool rt_scene_keeps_instances(const char *path);
+
 /* ---- raytally's own format (docs/scenes.md): yaml_read.c and yaml_write.c ---- */
 
 /* X(name): the coefficients of a material, keys of the file and fields of RtMaterial alike. */
@@ -39,7 +42,7 @@ RtStatus rt_yaml_load_text(const char *name, const char *text, RtSceneOpener *op
 
 /* Writes a finished scene, one object per line; reading it back yields the same fingerprint. Meshes and
  * built-ins are written as their objects, images of textures as absolute paths. Materials keep their names if
- * all are valid and different; otherwise they are called m0, m1 ... */
+ * all are valid and different; otherwise they are called m0, m1 ..., and parts likewise p0, p1 ... */
 RtStatus rt_yaml_save(const RtScene *scene, FILE *out, RtError *error);
 
 #endif

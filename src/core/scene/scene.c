@@ -67,6 +67,14 @@ RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint3
     return RT_OK;
 }
 
+RtStatus rt_scene_share_material(RtScene *scene, const RtMaterial *material, uint32_t *index,
+                                 RtError *error) {
+    for (*index = 0; *index < scene->material_count; ++*index) {
+        if (memcmp(&scene->materials[*index], material, sizeof *material) == 0) return RT_OK;
+    }
+    return rt_scene_add_material(scene, material, index, error);
+}
+
 RtStatus rt_scene_load_texels(const RtScene *scene, const char *path, RtTexels **texels, RtError *error) {
     char absolute[RT_MAX_PATH];
     const bool found = realpath(path, absolute);
@@ -139,8 +147,7 @@ void rt_scene_place(const RtScene *scene, uint32_t id, const RtRay *ray, RtPlace
         if (!rt_is_instance(g, object)) return;
         const RtInstance *instance = &g->instances[rt_ref_index(g->objects[object])];
         const uint32_t material = place->scene->material_of[object];
-        if (!place->material && material != RT_OWN_MATERIALS)
-            place->material = &place->scene->materials[material];
+        if (!place->material && material != RT_OWN_MATERIALS) place->material = &scene->materials[material];
         const RtRay outside = place->ray;
         rt_instance_enter(instance, &outside, &place->ray);
         place->to_world = rt_transform_compose(&instance->to_world, &place->to_world);
@@ -224,6 +231,14 @@ static void place_camera(RtCamera *camera, const RtBox *box) {
     camera->from = within_bounds(rt_add_scaledd(center, rt_normalized(towards), distance));
 }
 
+static void clear_materials(RtScene *scene) {
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        rt_texels_release(scene->materials[i].texture.texels);
+    rt_free(scene->materials);
+    scene->materials = NULL;
+    scene->material_count = scene->material_capacity = 0;
+}
+
 /* Computes the boxes. */
 static RtStatus finish_objects(RtScene *scene, RtError *error) {
     rt_trim(&scene->material_of, scene->geometry.object_count, &scene->material_of_capacity,
@@ -234,12 +249,30 @@ static RtStatus finish_objects(RtScene *scene, RtError *error) {
     return rt_geometry_finish(&scene->geometry, error);
 }
 
+/* Moves the materials of a part to the scene. */
+static RtStatus move_materials(RtScene *scene, RtScene *part, RtError *error) {
+    RT_ARENA(memory);
+    const RtGeometry *g = &part->geometry;
+    uint32_t *moved = rt_arena_alloc(&memory, part->material_count, sizeof *moved);
+    RT_TRY(rt_arena_check(&memory, "the materials of a part", error));
+    for (uint32_t i = 0; i < part->material_count; i++)
+        RT_TRY(rt_scene_share_material(scene, &part->materials[i], &moved[i], error));
+    for (uint32_t i = 0; i < g->object_count; i++) {
+        if (part->material_of[i] != RT_OWN_MATERIALS) part->material_of[i] = moved[part->material_of[i]];
+    }
+    for (uint32_t i = 0; i < g->forest.set.solid_count; i++)
+        g->forest.set.solids[i].material = moved[g->forest.set.solids[i].material];
+    clear_materials(part);
+    return RT_OK;
+}
+
 RtStatus rt_scene_add_part(RtScene *scene, RtScene *part, RtError *error) {
     RtScene *kept = rt_alloc(1, sizeof *kept);
     RtStatus status = kept ? finish_objects(part, error) : rt_fail_memory(error, "a part", sizeof *kept);
+    if (status == RT_OK) status = move_materials(scene, part, error);
     if (status == RT_OK)
         status =
-            rt_append(&scene->parts, &scene->part_count, &scene->part_capacity, &kept, sizeof kept, error);
+            rt_append(&scene->parts, &scene->part_count, &scene->part_capacity, &kept, sizeof(void *), error);
     if (status == RT_OK) {
         *kept = *part;
         *part = (RtScene){0};
@@ -274,12 +307,12 @@ RtStatus rt_scene_sample(RtScene *scene, uint32_t width, uint32_t height, uint32
 
 typedef struct Append {
     RtScene *to;
-    const RtScene *of; /* that owns the parts */
+    const RtScene *of; /* that owns the parts and materials */
     const RtScene *from;
     const RtTransform *transform; /* or NULL */
     double scale;                 /* the uniform scale, 0 if uneven */
     uint32_t painted;             /* index in `to` of the material of all objects, or RT_OWN_MATERIALS */
-    uint32_t *materials;          /* [from->material_count] index in `to` */
+    uint32_t *materials;          /* [of->material_count] index in `to` */
     RtVec3 *vertices;             /* [from->geometry.polygon_vertex_count] moved */
     bool textures;                /* keep them */
     RtError *error;
@@ -325,8 +358,7 @@ static RtStatus append_triangle(const Append *a, uint32_t material, uint32_t ind
     return texture ? rt_scene_set_triangle_texture(a->to, texture->at, a->error) : RT_OK;
 }
 
-static RtStatus append_all(RtScene *to, const RtScene *of, const RtScene *from, const RtTransform *transform,
-                           uint32_t painted, RtError *error);
+static RtStatus append_objects(Append a, const uint32_t *ids, uint32_t count);
 
 static RtStatus append_csg(const Append *a, const RtCsg *tree) {
     RtCsgBuilder builder = {0};
@@ -345,8 +377,12 @@ static RtStatus append_csg(const Append *a, const RtCsg *tree) {
 static RtStatus append_instance(const Append *a, uint32_t painted, const RtInstance *instance) {
     const RtScene *part = a->of->parts[instance->part];
     RtTransform moved = instance->to_world;
+    Append below = *a;
     if (a->transform) moved = rt_transform_compose(&moved, a->transform);
-    return append_all(a->to, a->of, part, &moved, painted, a->error);
+    below.from = part;
+    below.transform = &moved;
+    below.painted = painted;
+    return append_objects(below, NULL, part->geometry.object_count);
 }
 
 static RtStatus append_object(const Append *a, uint32_t id) {
@@ -369,50 +405,46 @@ static RtStatus append_object(const Append *a, uint32_t id) {
 }
 
 static RtStatus append_materials(const Append *a) {
-    for (uint32_t i = 0; i < a->from->material_count; i++) {
-        RtMaterial material = a->from->materials[i];
+    for (uint32_t i = 0; i < a->of->material_count; i++) {
+        RtMaterial material = a->of->materials[i];
         if (!a->textures) material.texture = (RtTexture){0};
-        uint32_t known = 0;
-        while (known < a->to->material_count &&
-               memcmp(&a->to->materials[known], &material, sizeof material) != 0)
-            known++;
-        a->materials[i] = known;
-        if (known == a->to->material_count)
-            RT_TRY(rt_scene_add_material(a->to, &material, &a->materials[i], a->error));
+        RT_TRY(rt_scene_share_material(a->to, &material, &a->materials[i], a->error));
     }
     return RT_OK;
 }
 
-/* The objects ids[0..count), or with NULL the first `count`, and textures. */
-static RtStatus append(RtScene *to, const RtScene *of, const RtScene *from, const uint32_t *ids,
-                       uint32_t count, const RtTransform *transform, uint32_t painted, RtError *error) {
+/* The objects ids[0..count), or with NULL the first `count`. */
+static RtStatus append_objects(Append a, const uint32_t *ids, uint32_t count) {
     RT_ARENA(memory);
-    const RtGeometry *g = &from->geometry;
-    const Append a = {.to = to,
-                      .of = of,
-                      .from = from,
-                      .painted = painted,
-                      .transform = transform,
-                      .scale = transform ? rt_transform_uniform_scale(transform) : 1,
-                      .materials = rt_arena_alloc(&memory, from->material_count, sizeof(uint32_t)),
-                      .vertices = rt_arena_alloc(&memory, g->polygon_vertex_count, sizeof(RtVec3)),
-                      .textures = !ids,
-                      .error = error};
-    RT_TRY(rt_arena_check(&memory, "appending a scene", error));
-    RT_TRY(append_materials(&a));
+    const RtGeometry *g = &a.from->geometry;
+    a.scale = a.transform ? rt_transform_uniform_scale(a.transform) : 1;
+    a.vertices = rt_arena_alloc(&memory, g->polygon_vertex_count, sizeof(RtVec3));
+    RT_TRY(rt_arena_check(&memory, "appending a scene", a.error));
     for (uint32_t i = 0; i < g->polygon_vertex_count; i++)
         a.vertices[i] = move_point(&a, g->polygon_vertices[i]);
     for (uint32_t i = 0; i < count; i++) RT_TRY(append_object(&a, ids ? ids[i] : i));
     return RT_OK;
 }
 
-static RtStatus append_all(RtScene *to, const RtScene *of, const RtScene *from, const RtTransform *transform,
-                           uint32_t painted, RtError *error) {
-    return append(to, of, from, NULL, from->geometry.object_count, transform, painted, error);
+/* With NULL, textures too. */
+static RtStatus append(RtScene *to, const RtScene *from, const uint32_t *ids, uint32_t count,
+                       const RtTransform *transform, RtError *error) {
+    RT_ARENA(memory);
+    const Append a = {.to = to,
+                      .of = from,
+                      .from = from,
+                      .transform = transform,
+                      .painted = RT_OWN_MATERIALS,
+                      .materials = rt_arena_alloc(&memory, from->material_count, sizeof(uint32_t)),
+                      .textures = !ids,
+                      .error = error};
+    RT_TRY(rt_arena_check(&memory, "appending a scene", error));
+    RT_TRY(append_materials(&a));
+    return append_objects(a, ids, count);
 }
 
 RtStatus rt_scene_append(RtScene *to, const RtScene *from, const RtTransform *transform, RtError *error) {
-    return append_all(to, from, from, transform, RT_OWN_MATERIALS, error);
+    return append(to, from, NULL, from->geometry.object_count, transform, error);
 }
 
 static RtStatus fill_subset(RtScene *to, const RtScene *from, const uint32_t *ids, uint32_t count,
@@ -422,7 +454,7 @@ static RtStatus fill_subset(RtScene *to, const RtScene *from, const uint32_t *id
     to->camera = from->camera;
     for (uint32_t i = 0; i < from->light_count; i++)
         RT_TRY(rt_scene_add_light(to, from->lights[i].position, from->lights[i].intensity, error));
-    RT_TRY(append(to, from, from, ids, count, NULL, RT_OWN_MATERIALS, error));
+    RT_TRY(append(to, from, ids, count, NULL, error));
     RT_TRY(rt_scene_finish(to, error));
     to->sampling = from->sampling;
     return RT_OK;
@@ -489,10 +521,8 @@ static void add_texture(XXH3_state_t *state, const RtTexture *texture) {
     ADD(texels->rgb, 3 * (size_t)texels->width * texels->height);
 }
 
-uint64_t rt_scene_fingerprint(const RtScene *scene) {
+static void add_objects(XXH3_state_t *state, const RtScene *scene) {
     const RtGeometry *g = &scene->geometry;
-    XXH3_state_t whole, *state = &whole;
-    XXH3_64bits_reset(state);
     ADD(g->objects, g->object_count);
     ADD(scene->material_of, g->object_count);
     ADD(g->spheres, g->sphere_count);
@@ -510,10 +540,13 @@ uint64_t rt_scene_fingerprint(const RtScene *scene) {
         ADD(&g->instances[i].to_world, 1);
         ADD(&g->instances[i].part, 1);
     }
-    for (uint32_t i = 0; i < scene->part_count; i++) {
-        const uint64_t part = rt_scene_fingerprint(scene->parts[i]);
-        ADD(&part, 1);
-    }
+}
+
+uint64_t rt_scene_fingerprint(const RtScene *scene) {
+    XXH3_state_t whole, *state = &whole;
+    XXH3_64bits_reset(state);
+    add_objects(state, scene);
+    for (uint32_t i = 0; i < scene->part_count; i++) add_objects(state, scene->parts[i]);
     for (uint32_t i = 0; i < scene->material_count; i++) { /* all but the name */
         XXH3_64bits_update(state, &scene->materials[i].color,
                            offsetof(RtMaterial, texture) - offsetof(RtMaterial, color));
@@ -542,15 +575,13 @@ uint64_t rt_scene_bytes(const RtScene *scene) {
 
 void rt_scene_clear(RtScene *scene) {
     rt_geometry_clear(&scene->geometry);
-    for (uint32_t i = 0; i < scene->material_count; i++)
-        rt_texels_release(scene->materials[i].texture.texels);
+    clear_materials(scene);
     for (uint32_t i = 0; i < scene->part_count; i++) {
         rt_scene_clear(scene->parts[i]);
         rt_free(scene->parts[i]);
     }
     rt_free(scene->parts);
     rt_free(scene->material_of);
-    rt_free(scene->materials);
     rt_free(scene->triangle_textures);
     rt_free(scene->lights);
     rt_warnings_clear(&scene->warnings);

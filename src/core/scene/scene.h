@@ -69,8 +69,8 @@ struct RtScene {
     RtWarnings warnings; /* about the files it was read from */
     RtVec3d offset;      /* readers subtract it from each position, in double, before they round to float32 */
     uint32_t part_count, part_capacity;
-    RtScene *
-        *parts; /* [part_count] owned, finished: objects and materials that instances place; none in parts */
+    RtScene **parts; /* [part_count] owned, finished: objects that instances place, whose materials are those
+                      * of this scene; none in parts */
 };
 
 #define RT_OWN_MATERIALS UINT32_MAX
@@ -86,6 +86,9 @@ RtMaterial rt_default_material(void);
 
 /* Appends a material, as one more user of its texels, and returns its index; rejects values out of range. */
 RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint32_t *index, RtError *error);
+
+/* The same, or returns that of a material that is equal, name included. */
+RtStatus rt_scene_share_material(RtScene *scene, const RtMaterial *material, uint32_t *index, RtError *error);
 
 /* Gets the texels of the image at `path`: a material's of the scene, or those of the file (rt_texels_load).
  * The caller is one of their users. */
@@ -116,8 +119,9 @@ RtStatus rt_scene_add_csg(RtScene *scene, const RtCsgBuilder *builder, RtCsgTerm
 /* Sets the material of all solids of the tree added last. */
 void rt_scene_paint_csg(RtScene *scene, uint32_t material);
 
-/* Finishes `part`, a scene without parts of its own, and moves it into *scene, as the next of its parts;
- * `part` is empty afterwards, also after a failure. */
+/* Finishes `part`, a scene without parts of its own, and moves it into *scene, as the next of its parts, and
+ * its materials into those of the scene, which share equal ones. `part` is empty afterwards, also after a
+ * failure. */
 RtStatus rt_scene_add_part(RtScene *scene, RtScene *part, RtError *error);
 
 /* Adds an instance of parts[part] of the scene `of` to `to`, which is that scene or will be one of its later

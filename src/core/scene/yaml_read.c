@@ -8,7 +8,7 @@
 #include "core/scene/formula.h"
 #include "core/scene/load.h"
 #include "core/scene/mesh.h"
-#include "core/text/yaml.h"
+#include "core/scene/yaml_values.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -83,7 +83,14 @@ static const Named *find_name(const Names *names, const char *name) {
 
 /* ---- what objects and solids share ---- */
 
-/* The `material` of an object; without one, the default material, created on first use. */
+/* The default material, created on first use. */
+static RtStatus need_default(Reader *r) {
+    const RtMaterial material = rt_default_material();
+    if (r->standard != UINT32_MAX) return RT_OK;
+    return rt_scene_add_material(r->scene, &material, &r->standard, r->error);
+}
+
+/* The `material` of an object; without one, the default material. */
 static RtStatus find_material(Reader *r, const RtYamlNode *object, uint32_t *index) {
     const RtYamlNode *node = rt_yaml_get(&r->yaml, object, "material");
     const char *name = "default";
@@ -92,22 +99,9 @@ static RtStatus find_material(Reader *r, const RtYamlNode *object, uint32_t *ind
     if (node && !found)
         return rt_yaml_fail(&r->yaml, node, "there is no material '%s': add it to the list of materials",
                             name);
-    if (!found && r->standard == UINT32_MAX) {
-        RtMaterial material = rt_default_material();
-        RT_TRY(rt_scene_add_material(r->scene, &material, &r->standard, r->error));
-    }
+    if (!found) RT_TRY(need_default(r));
     *index = found ? found->index : r->standard;
     return RT_OK;
-}
-
-static RtStatus add_rotation(Reader *r, const RtYamlNode *n, RtTransform *transform) {
-    RtVec3 axis = {0};
-    float degrees = 0;
-    RT_TRY(rt_yaml_keys(&r->yaml, n, "axis degrees"));
-    RT_TRY(rt_yaml_point(&r->yaml, n, "axis", &axis));
-    RT_TRY(rt_yaml_float(&r->yaml, n, "degrees", &degrees));
-    RtStatus status = rt_transform_rotate(transform, axis, (double)degrees, r->error);
-    return rt_yaml_place(&r->yaml, status, n, NULL);
 }
 
 static const RtVec3d nowhere = {{0, 0, 0}};
@@ -117,61 +111,9 @@ static bool has_offset(const Reader *r) {
     return rt_dotd(r->scene->offset, r->scene->offset) > 0;
 }
 
-static RtStatus add_step(Reader *r, const RtYamlNode *step, RtTransform *transform) {
-    const RtYaml *y = &r->yaml;
-    float scale = 1;
-    double exact[3] = {0};
-    RtVec3 stretch, move = {0};
-    RT_TRY(rt_yaml_keys(y, step, "scale| stretch| rotate| translate|"));
-    const RtYamlNode *rotate = rt_yaml_get(y, step, "rotate");
-    if (rotate) return add_rotation(r, rotate, transform);
-    RT_TRY(rt_yaml_float(y, step, "scale", &scale));
-    stretch = rt_vec3(scale, scale, scale);
-    RT_TRY(rt_yaml_point(y, step, "stretch", &stretch));
-    RT_TRY(rt_yaml_point(y, step, "translate", &move));
-    RtStatus status = rt_yaml_get(y, step, "translate") ? rt_transform_translate(transform, move, r->error)
-                                                        : rt_transform_scale(transform, stretch, r->error);
-    if (has_offset(r)) RT_TRY(rt_yaml_doubles(y, step, "translate", 3, exact));
-    for (int a = 0; a < 3 && has_offset(r); a++) transform->m[a][3] += exact[a] - (double)move.at[a];
-    return rt_yaml_place(y, status, step, NULL);
-}
-
-/* The `transform` of an object, less `offset`. *given is `transform`, or NULL if it moves nothing. */
-static RtStatus read_transform(Reader *r, const RtYamlNode *object, RtVec3d offset, RtTransform *transform,
-                               const RtTransform **given) {
-    const RtYamlNode *steps = rt_yaml_get(&r->yaml, object, "transform");
-    *transform = rt_transform_identity();
-    RT_TRY(rt_yaml_list(&r->yaml, steps, NULL, 0, UINT32_MAX, "steps"));
-    for (const RtYamlNode *n = rt_yaml_first(steps); n != rt_yaml_end(steps); n += n->size)
-        RT_TRY(add_step(r, n, transform));
-    for (int a = 0; a < 3; a++) transform->m[a][3] -= offset.at[a];
-    *given = rt_yaml_count(steps) || rt_dotd(offset, offset) > 0 ? transform : NULL;
-    return RT_OK;
-}
-
-static RtStatus read_sphere(const RtYaml *y, const RtYamlNode *n, RtVec3 *center, float *radius) {
-    *center = rt_vec3(0, 0, 0);
-    *radius = 0;
-    RT_TRY(rt_yaml_keys(y, n, "center radius material?"));
-    RT_TRY(rt_yaml_position(y, n, "center", center));
-    return rt_yaml_float(y, n, "radius", radius);
-}
-
-/* The key of a value, which comes before it. */
-static const char *key_of(const RtYaml *y, const RtYamlNode *value) {
-    return rt_yaml_text_of(y, value - 1);
-}
-
-/* A cone, or a cylinder. */
-static RtStatus read_cone(const RtYaml *y, const RtYamlNode *n, RtCone *cone) {
-    const bool cylinder = strcmp(key_of(y, n), "cylinder") == 0;
-    *cone = (RtCone){0};
-    RT_TRY(rt_yaml_keys(
-        y, n, cylinder ? "base apex radius material?" : "base base_radius apex apex_radius material?"));
-    RT_TRY(rt_yaml_position(y, n, "base", &cone->base));
-    RT_TRY(rt_yaml_position(y, n, "apex", &cone->apex));
-    RT_TRY(rt_yaml_float(y, n, cylinder ? "radius" : "base_radius", &cone->base_radius));
-    return rt_yaml_float(y, n, cylinder ? "radius" : "apex_radius", &cone->apex_radius);
+static RtStatus read_transform(const Reader *r, const RtYamlNode *object, RtVec3d offset,
+                               RtTransform *transform, const RtTransform **given) {
+    return rt_yaml_transform(&r->yaml, object, offset, has_offset(r), transform, given);
 }
 
 /* The path of a file that the scene names as `key`, relative to the scene's own. */
@@ -245,7 +187,7 @@ static RtStatus solid_sphere(Reader *r, const RtYamlNode *n, uint32_t *index) {
     const RtYaml *y = &r->yaml;
     RtVec3 center;
     float radius;
-    RT_TRY(read_sphere(y, n, &center, &radius));
+    RT_TRY(rt_yaml_sphere(y, n, &center, &radius));
     if (!(radius > 0))
         return rt_yaml_fail(y, rt_yaml_get(y, n, "radius"),
                             "a sphere needs a radius above 0, this one has %g", (double)radius);
@@ -265,7 +207,7 @@ static const struct Pair {
 static RtStatus solid_pair(Reader *r, const RtYamlNode *n, uint32_t *index) {
     const struct Pair *pair = pairs;
     RtVec3 first = {0}, second = {0};
-    while (strcmp(pair->kind, key_of(&r->yaml, n)) != 0) pair++;
+    while (strcmp(pair->kind, rt_yaml_key_of(&r->yaml, n)) != 0) pair++;
     RT_TRY(rt_yaml_keys(&r->yaml, n, pair->keys));
     RT_TRY(rt_yaml_position(&r->yaml, n, pair->first, &first));
     RT_TRY(pair->add == rt_solid_add_box ? rt_yaml_position(&r->yaml, n, pair->second, &second)
@@ -275,7 +217,7 @@ static RtStatus solid_pair(Reader *r, const RtYamlNode *n, uint32_t *index) {
 
 static RtStatus solid_round(Reader *r, const RtYamlNode *n, uint32_t *index) {
     RtCone c;
-    RT_TRY(read_cone(&r->yaml, n, &c));
+    RT_TRY(rt_yaml_cone(&r->yaml, n, &c));
     RtStatus status =
         rt_solid_add_frustum(&r->builder.set, c.base, c.base_radius, c.apex, c.apex_radius, index, r->error);
     return rt_yaml_place(&r->yaml, status, n, NULL);
@@ -437,19 +379,6 @@ static RtStatus move(Reader *r, const RtYamlNode *n, RtVec3d offset, RtCsgTerm *
     X(cone, round)                                                                                           \
     X(torus, torus) X(polyhedron, polyhedron) X(mesh, mesh) X(facets, facets) X(standard, standard)
 
-/* The first of the points that place a solid. */
-static RtVec3d first_point(const RtYaml *y, const RtYamlNode *solid) {
-    static const char *const keys[] = {"center", "lo", "point", "base", "vertices", "triangles"};
-    RtVec3d point = nowhere;
-    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
-        const RtYamlNode *n = rt_yaml_get(y, solid, keys[i]);
-        while (n && n->kind == RT_YAML_LIST && n->count > 0) n++;
-        for (int a = 0; n && a < 3 && n + a < y->nodes + y->node_count && n[a].kind == RT_YAML_SCALAR; a++)
-            point.at[a] = strtod(rt_yaml_text_of(y, n + a), NULL);
-    }
-    return point;
-}
-
 /* Adds a solid of any kind. In a scene with an offset, which trees subtract in the end, its points are read
  * relative to the first, and it is moved there in double. */
 static RtStatus solid_kind(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) {
@@ -461,7 +390,7 @@ static RtStatus solid_kind(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) 
 #define ADD(kind, function)                                                                                  \
     if ((n = rt_yaml_get(&r->yaml, entry, #kind))) {                                                         \
         RT_TRY(find_material(r, n, &material));                                                              \
-        if (has_offset(r)) r->yaml.offset = first_point(&r->yaml, n);                                        \
+        if (has_offset(r)) r->yaml.offset = rt_yaml_first_point(&r->yaml, n);                                \
         RT_TRY(solid_##function(r, n, &index));                                                              \
     }
     SOLIDS(ADD)
@@ -518,7 +447,7 @@ static RtStatus object_csg(Reader *r, const RtYamlNode *csg) {
 static RtStatus object_sphere(Reader *r, const RtYamlNode *n, uint32_t material) {
     RtVec3 center;
     float radius;
-    RT_TRY(read_sphere(&r->yaml, n, &center, &radius));
+    RT_TRY(rt_yaml_sphere(&r->yaml, n, &center, &radius));
     return rt_yaml_place(&r->yaml, rt_scene_add_sphere(r->scene, material, center, radius, r->error), n,
                          radius > 0 ? "center" : "radius");
 }
@@ -533,34 +462,15 @@ static RtStatus object_polygon(Reader *r, const RtYamlNode *n, uint32_t material
     return rt_yaml_place(&r->yaml, status, n, "vertices");
 }
 
-/* Positions, or normals. */
-static RtStatus read_points(const RtYaml *y, const RtYamlNode *list, bool normals, RtVec3 points[3]) {
-    RT_TRY(rt_yaml_list(y, list, NULL, 3, 3, "lists of numbers, as in [1, 2, 3]"));
-    for (const RtYamlNode *p = rt_yaml_first(list); p != rt_yaml_end(list); p += p->size)
-        RT_TRY((normals ? rt_yaml_point : rt_yaml_position)(y, p, NULL, points++));
-    return RT_OK;
-}
-
-/* Texture coordinates. */
-static RtStatus read_corners(const RtYaml *y, const RtYamlNode *list, RtUv at[3]) {
-    RT_TRY(rt_yaml_list(y, list, NULL, 3, 3, "pairs of numbers, as in [0, 1]"));
-    for (const RtYamlNode *p = rt_yaml_first(list); p != rt_yaml_end(list); p += p->size, at++) {
-        RT_TRY(rt_yaml_list(y, p, NULL, 2, 2, "numbers, as in [0, 1]"));
-        RT_TRY(rt_yaml_float(y, p + 1, NULL, &at->u));
-        RT_TRY(rt_yaml_float(y, p + 2, NULL, &at->v));
-    }
-    return RT_OK;
-}
-
 static RtStatus object_triangle(Reader *r, const RtYamlNode *n, uint32_t material) {
     const RtYaml *y = &r->yaml;
     RtVec3 v[3] = {{0}}, at_vertices[3] = {{0}};
     RtUv corners[3] = {{0}};
     RT_TRY(rt_yaml_keys(y, n, "vertices normals? uv? material?"));
     const RtYamlNode *normals = rt_yaml_get(y, n, "normals"), *uv = rt_yaml_get(y, n, "uv");
-    RT_TRY(read_points(y, rt_yaml_get(y, n, "vertices"), false, v));
-    RT_TRY(read_points(y, normals, true, at_vertices));
-    RT_TRY(read_corners(y, uv, corners));
+    RT_TRY(rt_yaml_points(y, rt_yaml_get(y, n, "vertices"), false, v));
+    RT_TRY(rt_yaml_points(y, normals, true, at_vertices));
+    RT_TRY(rt_yaml_corners(y, uv, corners));
     RtStatus status = rt_scene_add_triangle(r->scene, material, v, normals ? at_vertices : NULL, r->error);
     if (status == RT_OK && uv) status = rt_scene_set_triangle_texture(r->scene, corners, r->error);
     return rt_yaml_place(y, status, n, NULL);
@@ -568,7 +478,7 @@ static RtStatus object_triangle(Reader *r, const RtYamlNode *n, uint32_t materia
 
 static RtStatus object_round(Reader *r, const RtYamlNode *n, uint32_t material) {
     RtCone c;
-    RT_TRY(read_cone(&r->yaml, n, &c));
+    RT_TRY(rt_yaml_cone(&r->yaml, n, &c));
     RtStatus status =
         rt_scene_add_cone(r->scene, material, c.base, c.base_radius, c.apex, c.apex_radius, r->error);
     return rt_yaml_place(&r->yaml, status, n, NULL);
@@ -652,7 +562,7 @@ static RtStatus add_instance(Reader *r, const RtYamlNode *entry) {
     if (place) RT_TRY(rt_yaml_doubles(y, entry, "place", 12, &transform.m[0][0]));
     for (int a = 0; a < 3 && place; a++) transform.m[a][3] -= r->scene->offset.at[a];
     RtStatus status = rt_scene_add_instance(r->scene, r->whole, part, &transform, material, r->error);
-    return rt_yaml_place(y, status, entry, NULL);
+    return rt_yaml_place(y, status, entry, place ? "place" : "transform");
 }
 
 /* The objects and instances of the scene, or of a part. */
@@ -661,9 +571,10 @@ static RtStatus add_content(Reader *r, const RtYamlNode *from) {
                      *instances = rt_yaml_get(&r->yaml, from, "instances");
     r->yaml.offset = r->scene->offset;
     if (!objects && !instances)
-        return rt_yaml_fail(&r->yaml, from, "`objects` or `instances` are missing: there is nothing to see");
-    RT_TRY(rt_yaml_list(&r->yaml, objects, NULL, instances ? 0 : 1, UINT32_MAX, "objects"));
-    RT_TRY(rt_yaml_list(&r->yaml, instances, NULL, 0, UINT32_MAX, "instances"));
+        return rt_yaml_fail(&r->yaml, from,
+                            "'objects' is missing: a scene and a part have objects, instances or both");
+    RT_TRY(rt_yaml_list(&r->yaml, instances, NULL, rt_yaml_count(objects) ? 0 : 1, UINT32_MAX, "instances"));
+    RT_TRY(rt_yaml_list(&r->yaml, objects, NULL, rt_yaml_count(instances) ? 0 : 1, UINT32_MAX, "objects"));
     for (const RtYamlNode *n = rt_yaml_first(objects); n != rt_yaml_end(objects); n += n->size)
         RT_TRY(add_object(r, n));
     for (const RtYamlNode *n = rt_yaml_first(instances); n != rt_yaml_end(instances); n += n->size)
@@ -671,109 +582,48 @@ static RtStatus add_content(Reader *r, const RtYamlNode *from) {
     return RT_OK;
 }
 
-static RtStatus read_part(Reader *r, const RtYamlNode *entry, RtScene *part) {
+/* Gives a part the materials of the scene, at the same indices. Origins of textures do not move with the
+ * scene: they are places in the part. */
+static RtStatus add_materials_of(Reader *r, RtScene *part) {
     uint32_t same;
+    r->yaml.offset = nowhere;
+    for (uint32_t i = 0; i < r->whole->material_count; i++) {
+        RtMaterial material = r->whole->materials[i];
+        const Named *named = has_offset(r) ? find_name(&r->materials, material.name) : NULL;
+        const RtYamlNode *texture = named ? rt_yaml_get(&r->yaml, named->node, "texture") : NULL;
+        if (texture) material.texture.origin = rt_vec3(0, 0, 0);
+        if (texture) RT_TRY(rt_yaml_position(&r->yaml, texture, "origin", &material.texture.origin));
+        RT_TRY(rt_scene_add_material(part, &material, &same, r->error));
+    }
+    return RT_OK;
+}
+
+static RtStatus read_part(Reader *r, const RtYamlNode *entry, RtScene *part) {
     const char *name = "";
     RT_TRY(rt_yaml_text(&r->yaml, entry, "name", RT_MAX_NAME - 1, &name));
     memcpy(part->name, name, strlen(name) + 1);
+    RT_TRY(add_materials_of(r, part));
     part->warnings = r->whole->warnings; /* lent */
     r->scene = part;
-    RtStatus status = RT_OK;
-    for (uint32_t i = 0; i < r->whole->material_count && status == RT_OK; i++)
-        status = rt_scene_add_material(part, &r->whole->materials[i], &same, r->error);
-    if (status == RT_OK) status = add_content(r, entry);
+    RtStatus status = add_content(r, entry);
     r->scene = r->whole;
     r->whole->warnings = part->warnings;
     part->warnings = (RtWarnings){0};
     return status;
 }
 
-/* A part has the materials of the list at the same indices. */
+/* The default material comes before the parts, so that these share it. */
 static RtStatus add_parts(Reader *r, const RtYamlNode *list) {
     RT_TRY(read_names(r, list, "name objects? instances?", RT_MAX_NAME - 1, "parts", &r->parts));
+    if (r->parts.count > 0 && !find_name(&r->materials, "default")) RT_TRY(need_default(r));
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
         RtScene part = {0};
-        const uint32_t standard = r->standard;
         RtStatus status = read_part(r, n, &part);
-        r->standard = standard;
         if (status != RT_OK) {
             rt_scene_clear(&part);
             return status;
         }
         RT_TRY(rt_scene_add_part(r->whole, &part, r->error));
-    }
-    return RT_OK;
-}
-
-/* ---- camera, light ---- */
-
-static bool is_far(RtVec3 p) {
-    return rt_maxf(fabsf(p.x), rt_maxf(fabsf(p.y), fabsf(p.z))) > RT_MAX_COORDINATE;
-}
-
-/* Checks the camera as rendering does. If it will be placed later, its line of sight is assumed
- * perpendicular to `up`. */
-static RtStatus check_camera(const RtCamera *camera, bool placed, const char **key, RtError *error) {
-    *key = "size";
-    RtSampling sampling;
-    RT_TRY(rt_sampling_init(&sampling, camera->width, camera->height, 1, false, error));
-    *key = is_far(camera->from) ? "from" : "at";
-    if (is_far(camera->from) || is_far(camera->at))
-        return rt_fail(error, RT_BAD_INPUT, "the camera is farther than %g from the origin: move it nearer",
-                       (double)RT_MAX_COORDINATE);
-    RtCamera tried = *camera;
-    if (!placed) tried.at.at[(rt_major_axis(camera->up) + 1) % 3] = 1;
-    RtVec3 gap = rt_sub(tried.at, tried.from);
-    *key = !(camera->fov > 0 && camera->fov < 180) ? "fov"
-           : !(camera->near >= 0)                  ? "near"
-           : rt_dot(gap, gap) > 0                  ? "up"
-                                                   : "at";
-    RtView view;
-    return rt_view_init(&view, &tried, sampling, error);
-}
-
-static RtStatus set_camera(Reader *r, const RtYamlNode *n) {
-    const RtYaml *y = &r->yaml;
-    RtCamera *camera = &r->scene->camera;
-    RT_TRY(rt_yaml_keys(y, n, "from? at? up? fov? near? size?"));
-    bool placed = rt_yaml_get(y, n, "from");
-    if (placed != !!rt_yaml_get(y, n, "at"))
-        return rt_yaml_fail(y, n,
-                            "`from` and `at` belong together: give both, or neither for a camera that sees "
-                            "the whole scene");
-    RT_TRY(rt_yaml_position(y, n, "from", &camera->from));
-    RT_TRY(rt_yaml_position(y, n, "at", &camera->at));
-    RT_TRY(rt_yaml_point(y, n, "up", &camera->up));
-    RT_TRY(rt_yaml_float(y, n, "fov", &camera->fov));
-    RT_TRY(rt_yaml_float(y, n, "near", &camera->near));
-    RT_TRY(rt_yaml_list(y, n, "size", 2, 2, "numbers, as in [640, 480]"));
-    const RtYamlNode *size = rt_yaml_get(y, n, "size");
-    uint32_t *side = &camera->width;
-    for (const RtYamlNode *s = rt_yaml_first(size); s != rt_yaml_end(size); s += s->size) {
-        RT_TRY(rt_yaml_u32(y, s, NULL, 1, RT_MAX_IMAGE_SIDE, side));
-        side = &camera->height;
-    }
-    const char *key;
-    RtStatus status = check_camera(camera, placed, &key, r->error);
-    return rt_yaml_place(y, status, n, key);
-}
-
-static RtStatus set_color(Reader *r, const RtYamlNode *scene, const char *key, RtVec3 *color) {
-    RT_TRY(rt_yaml_point(&r->yaml, scene, key, color));
-    if (color->x >= 0 && color->y >= 0 && color->z >= 0) return RT_OK;
-    RtStatus status = rt_fail(r->error, RT_BAD_INPUT, "a colour must not be negative: [red, green, blue]");
-    return rt_yaml_place(&r->yaml, status, scene, key);
-}
-
-static RtStatus add_lights(Reader *r, const RtYamlNode *list) {
-    const RtYaml *y = &r->yaml;
-    RT_TRY(rt_yaml_list(y, list, NULL, 0, UINT32_MAX, "lights"));
-    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
-        RtVec3 position = {0}, intensity = rt_vec3(1, 1, 1);
-        RT_TRY(rt_yaml_keys(y, n, "position intensity?"));
-        RT_TRY(rt_yaml_position(y, n, "position", &position));
-        RT_TRY(rt_yaml_point(y, n, "intensity", &intensity));
-        RT_TRY(rt_yaml_place(y, rt_scene_add_light(r->scene, position, intensity, r->error), n, NULL));
     }
     return RT_OK;
 }
@@ -789,10 +639,10 @@ static RtStatus build(Reader *r) {
         "camera? background? ambient? lights? materials? solids? parts? objects? instances? format?"));
     const RtYamlNode *camera = rt_yaml_get(y, root, "camera");
     r->yaml.offset = r->scene->offset;
-    if (camera) RT_TRY(set_camera(r, camera));
-    RT_TRY(set_color(r, root, "background", &r->scene->background));
-    RT_TRY(set_color(r, root, "ambient", &r->scene->ambient));
-    RT_TRY(add_lights(r, rt_yaml_get(y, root, "lights")));
+    if (camera) RT_TRY(rt_yaml_camera(y, camera, &r->scene->camera));
+    RT_TRY(rt_yaml_color(y, root, "background", &r->scene->background));
+    RT_TRY(rt_yaml_color(y, root, "ambient", &r->scene->ambient));
+    RT_TRY(rt_yaml_lights(y, rt_yaml_get(y, root, "lights"), r->scene));
     RT_TRY(add_materials(r, rt_yaml_get(y, root, "materials")));
     RT_TRY(add_solids(r, rt_yaml_get(y, root, "solids")));
     RT_TRY(add_parts(r, rt_yaml_get(y, root, "parts")));

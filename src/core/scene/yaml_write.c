@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Writing a scene as YAML. Numbers have as many significant digits as restore the float32 bit for bit: 9
- * always suffice, 6 often. */
+ * always suffice, 6 often. The solids of parts come before those of the scene. */
 #include "core/base/versions.h"
 #include "core/scene/formula.h"
 #include "core/scene/load.h"
@@ -10,9 +10,11 @@
 #include <string.h>
 
 typedef struct Writer {
-    const RtScene *scene;
+    const RtScene *whole, *scene; /* `scene`: the whole, or one of its parts */
     FILE *out;
-    bool numbered; /* material names are not usable: m0, m1 ... */
+    bool numbered;       /* material names are not usable: m0, m1 ... */
+    bool parts_numbered; /* those of parts: p0, p1 ... */
+    uint32_t solids;     /* of the scenes before */
 } Writer;
 
 /* ---- values ---- */
@@ -73,16 +75,26 @@ static void quote(const char *name, char *out) {
     strcpy(out, "'");
 }
 
-static void material_name(Writer *w, const char *key, uint32_t index) {
-    char name[2 * RT_MAX_NAME + 2];
-    if (w->numbered)
-        snprintf(name, sizeof name, "'m%u'", index);
+/* Writes the name, or if they are numbered, a letter and the index. */
+static void name_key(Writer *w, const char *key, const char *name, bool numbered, char letter,
+                     uint32_t index) {
+    char text[2 * RT_MAX_NAME + 2];
+    if (numbered)
+        snprintf(text, sizeof text, "'%c%u'", letter, index);
     else
-        quote(w->scene->materials[index].name, name);
-    fprintf(w->out, "%s%s", key, name);
+        quote(name, text);
+    fprintf(w->out, "%s%s", key, text);
 }
 
-/* ---- the parts of a scene ---- */
+static void material_name(Writer *w, const char *key, uint32_t index) {
+    name_key(w, key, w->whole->materials[index].name, w->numbered, 'm', index);
+}
+
+static void part_name(Writer *w, const char *key, uint32_t index) {
+    name_key(w, key, w->whole->parts[index]->name, w->parts_numbered, 'p', index);
+}
+
+/* ---- camera, lights, materials ---- */
 
 static void write_camera(Writer *w, const RtCamera *camera) {
     point_key(w, "camera: {from: ", camera->from);
@@ -135,10 +147,10 @@ static void write_materials(Writer *w) {
 
 static void write_solids(Writer *w) {
     const RtSolidSet *set = &w->scene->geometry.forest.set;
-    if (set->solid_count > 0) fputs("solids:\n", w->out);
+    if (set->solid_count > 0 && w->solids == 0) fputs("solids:\n", w->out);
     for (uint32_t i = 0; i < set->solid_count; i++) {
         const RtSolid *solid = &set->solids[i];
-        fprintf(w->out, "- {name: s%u, ", i);
+        fprintf(w->out, "- {name: s%u, ", w->solids + i);
         if (solid->kind == RT_SOLID_POLYHEDRON) {
             fputs("polyhedron: {planes: ", w->out);
             rows(w, set->planes + solid->first, solid->count, 4, true);
@@ -156,13 +168,14 @@ static void write_solids(Writer *w) {
         material_name(w, ", material: ", solid->material);
         fputs("}}\n", w->out);
     }
+    w->solids += set->solid_count;
 }
 
 /* ---- objects ---- */
 
 static RtStatus write_csg(Writer *w, const RtCsg *tree, RtError *error) {
     char *formula;
-    RT_TRY(rt_formula_write(&w->scene->geometry.forest, tree, &formula, error));
+    RT_TRY(rt_formula_write(&w->scene->geometry.forest, tree, w->solids, &formula, error));
     fprintf(w->out, "formula: '%s', extents: '%s'", formula, tree->extents ? "on" : "off");
     rt_free(formula);
     return RT_OK;
@@ -194,23 +207,60 @@ static RtStatus write_shape(Writer *w, RtShape shape, uint32_t index, RtError *e
         number_key(w, ", apex_radius: ", g->cones[index].apex_radius);
         break;
     case RT_SHAPE_CSG: return write_csg(w, &g->csgs[index], error);
-    case RT_SHAPE_INSTANCE: /* flattened earlier */
+    case RT_SHAPE_INSTANCE: /* write_instances */
     case RT_SHAPE_COUNT: break;
     }
     return RT_OK;
 }
 
-static RtStatus write_objects(Writer *w, RtError *error) {
+static void write_instances(Writer *w, const char *indent) {
     const RtGeometry *g = &w->scene->geometry;
-    fputs(g->object_count ? "objects:\n" : "objects: []\n", w->out);
-    for (uint32_t id = 0; id < g->object_count && !ferror(w->out); id++) {
+    if (g->instance_count) fprintf(w->out, "%sinstances:\n", indent);
+    for (uint32_t i = 0; i < g->instance_count; i++) {
+        const uint32_t material = w->scene->material_of[g->instance_ids[i]];
+        fprintf(w->out, "%s- ", indent);
+        part_name(w, "{part: ", g->instances[i].part);
+        fputs(", place: ", w->out);
+        numbers(w, g->instances[i].to_world.m, 12, true);
+        if (material != RT_OWN_MATERIALS) material_name(w, ", material: ", material);
+        fputs("}\n", w->out);
+    }
+}
+
+/* With the instances. */
+static RtStatus write_objects(Writer *w, const char *indent, RtError *error) {
+    const RtGeometry *g = &w->scene->geometry;
+    const uint32_t count = g->object_count - g->instance_count;
+    fprintf(w->out, count ? "%sobjects:\n" : "%sobjects: []\n", indent);
+    for (uint32_t id = 0; id < count && !ferror(w->out); id++) {
         RtShape shape = rt_ref_shape(g->objects[id]);
-        fprintf(w->out, "- {%s: {", rt_shape_name(shape));
+        fprintf(w->out, "%s- {%s: {", indent, rt_shape_name(shape));
         RT_TRY(write_shape(w, shape, rt_ref_index(g->objects[id]), error));
         if (shape != RT_SHAPE_CSG) material_name(w, ", material: ", w->scene->material_of[id]);
         fputs("}}\n", w->out);
     }
+    write_instances(w, indent);
+    w->solids += g->forest.set.solid_count;
     return RT_OK;
+}
+
+/* The solids, the parts and the objects. */
+static RtStatus write_content(Writer *w, RtError *error) {
+    const RtScene *whole = w->whole;
+    for (uint32_t i = 0; i <= whole->part_count; i++) {
+        w->scene = i < whole->part_count ? whole->parts[i] : whole;
+        write_solids(w);
+    }
+    w->solids = 0;
+    if (whole->part_count > 0) fputs("parts:\n", w->out);
+    for (uint32_t i = 0; i < whole->part_count; i++) {
+        w->scene = whole->parts[i];
+        part_name(w, "- name: ", i);
+        fputc('\n', w->out);
+        RT_TRY(write_objects(w, "  ", error));
+    }
+    w->scene = whole;
+    return write_objects(w, "", error);
 }
 
 /* ---- names ---- */
@@ -223,22 +273,22 @@ static int compare_names(const void *a, const void *b) {
 static RtStatus try_name(const char *name, bool *good, RtError *error) {
     char text[2 * RT_MAX_NAME + 2];
     RtYaml yaml;
+    *good = strlen(name) < RT_MAX_NAME;
+    if (!*good) return RT_OK;
     quote(name, text);
-    RtStatus status = rt_yaml_parse(&yaml, "the name of a material", text, strlen(text), error);
+    RtStatus status = rt_yaml_parse(&yaml, "a name", text, strlen(text), error);
     *good = status == RT_OK && name[0] && strcmp(yaml.text, name) == 0;
     if (status == RT_OK) rt_yaml_close(&yaml);
     return status == RT_NO_MEMORY ? status : RT_OK;
 }
 
-static RtStatus try_names(const RtScene *scene, const char **names, bool *good, RtError *error) {
-    uint32_t count = scene->material_count;
-    *good = true;
-    for (uint32_t i = 0; i < count && *good; i++) {
-        names[i] = scene->materials[i].name;
-        RT_TRY(try_name(names[i], good, error));
-    }
-    if (*good) qsort(names, count, sizeof *names, compare_names);
-    for (uint32_t i = 1; i < count && *good; i++) *good = strcmp(names[i - 1], names[i]) != 0;
+/* Must the `count` names be numbers, because one cannot be read, or two are equal? Sorts them. */
+static RtStatus try_names(const char **names, uint32_t count, bool *numbered, RtError *error) {
+    bool good = true;
+    for (uint32_t i = 0; i < count && good; i++) RT_TRY(try_name(names[i], &good, error));
+    if (good) qsort(names, count, sizeof *names, compare_names);
+    for (uint32_t i = 1; i < count && good; i++) good = strcmp(names[i - 1], names[i]) != 0;
+    *numbered = !good;
     return RT_OK;
 }
 
@@ -246,12 +296,14 @@ static RtStatus try_names(const RtScene *scene, const char **names, bool *good, 
 
 RtStatus rt_yaml_save(const RtScene *scene, FILE *out, RtError *error) {
     RT_ARENA(memory);
-    Writer w = {.scene = scene, .out = out};
-    const char **names = rt_arena_alloc(&memory, scene->material_count, sizeof *names);
-    bool good;
-    RT_TRY(rt_arena_check(&memory, "the names of materials", error));
-    RT_TRY(try_names(scene, names, &good, error));
-    w.numbered = !good;
+    Writer w = {.whole = scene, .scene = scene, .out = out};
+    const char **materials = rt_arena_alloc(&memory, scene->material_count, sizeof *materials),
+               **parts = rt_arena_alloc(&memory, scene->part_count, sizeof *parts);
+    RT_TRY(rt_arena_check(&memory, "names", error));
+    for (uint32_t i = 0; i < scene->material_count; i++) materials[i] = scene->materials[i].name;
+    for (uint32_t i = 0; i < scene->part_count; i++) parts[i] = scene->parts[i]->name;
+    RT_TRY(try_names(materials, scene->material_count, &w.numbered, error));
+    RT_TRY(try_names(parts, scene->part_count, &w.parts_numbered, error));
     fprintf(out, "format: %d\n", RT_FILE_FORMAT);
     write_camera(&w, &scene->camera);
     point_key(&w, "background: ", scene->background);
@@ -259,8 +311,7 @@ RtStatus rt_yaml_save(const RtScene *scene, FILE *out, RtError *error) {
     fputc('\n', out);
     write_lights(&w);
     write_materials(&w);
-    write_solids(&w);
-    RT_TRY(write_objects(&w, error));
+    RT_TRY(write_content(&w, error));
     if (!ferror(out)) return RT_OK;
     return rt_fail(error, RT_IO, "writing the scene failed: is the disk full?");
 }
