@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Specs: "name:key=value,key=value", with '+' between layers and '/' before the accelerator of parts. And names for the fastest of several
- * (RtBestOf), which stand for all combinations of the choices listed there, those of the first parameter
- * varying fastest. */
+/* Specs: "name:key=value,key=value", with '+' between layers and '/' before the accelerator of parts. And
+ * names for the fastest of several (RtBestOf), which stand for all combinations of the choices listed there,
+ * those of the first parameter varying fastest. */
 #include "accel/accel.h"
 #include "accel/isa.h"
 #include "core/base/clock.h"
@@ -72,9 +72,10 @@ static RtStatus check_layers(const RtSpec *spec, const char *text, RtError *erro
 static RtStatus parse_part(const char *text, RtSpec *spec, RtError *error) {
     spec->of_parts = true;
     RT_TRY(parse_layer(text, strlen(text), &spec->part, error));
-    if (!spec->part.ops->kinds && !spec->part.ops->remote) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "'%.80s': %s cannot stand after a '/', where the accelerator of parts is",
-                   text, spec->part.ops->name);
+    if (!spec->part.ops->kinds && !spec->part.ops->remote && !spec->part.ops->flat) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "'%.80s': %s cannot stand after a '/', where the accelerator of parts is", text,
+                   spec->part.ops->name);
 }
 
 RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error) {

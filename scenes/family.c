@@ -269,7 +269,7 @@ static void add_object(Family *f, uint32_t i) {
 
 /* ---- instances ---- */
 
-enum { PARTS = 6, IN_PART = 6, INSTANCES = 32 };
+enum { PARTS = 6, IN_PART = 4, INSTANCES = 16 };
 
 /* By turns on the lattice, with quarter turns, where faces are shared and instances coincide; turned and
  * scaled unevenly; sheared; and small. Far ones are also scaled by up to 2^8, and moved by up to 2^10 times

@@ -104,17 +104,20 @@ RtStatus rt_transform_invert(const RtTransform *transform, RtTransform *inverse,
     const RtVec3d rows[3] = {rt_crossd(y, z), rt_crossd(z, x), rt_crossd(x, y)};
     const double determinant = rt_dotd(x, rows[0]);
     for (int row = 0; row < 3; row++) {
-        for (int column = 0; column < 3; column++) inverse->m[row][column] = rows[row].at[column] / determinant;
+        for (int column = 0; column < 3; column++)
+            inverse->m[row][column] = rows[row].at[column] / determinant;
         inverse->m[row][3] = -rt_dotd(rows[row], at) / determinant;
     }
-    const double most = stretch(transform), least = 1 / stretch(inverse);
-    if (determinant > 0 && most <= RT_MAX_STRETCH && least >= 1 / RT_MAX_STRETCH &&
-        most <= least * RT_MAX_STRETCH && isfinite(rt_lengthd(rt_transform_column(inverse, 3))))
+    const double most = stretch(transform), least = 1 / stretch(inverse),
+                 limit = RT_MAX_STRETCH * (1 + 0x1p-22);
+    if (determinant > 0 && most <= limit && least >= 1 / limit && most <= least * limit &&
+        isfinite(inverse->m[0][3] + inverse->m[1][3] + inverse->m[2][3]))
         return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "the matrix of an instance scales by factors from %.3g to %.3g%s: between 1e-6 and 1e6, at "
-                   "most a factor of 1e6 apart, and no mirror, can be undone",
-                   least, most, determinant < 0 ? " and mirrors" : "");
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "the matrix of an instance scales by factors from %.3g to %.3g%s: between 1e-6 and 1e6, at "
+        "most a factor of 1e6 apart, and no mirror, can be undone",
+        least, most, determinant < 0 ? " and mirrors" : "");
 }
 
 RtVec3d rt_transform_normald(const RtTransform *transform, RtVec3d normal) {

@@ -238,7 +238,8 @@ RtStatus rt_scene_add_part(RtScene *scene, RtScene *part, RtError *error) {
     RtScene *kept = rt_alloc(1, sizeof *kept);
     RtStatus status = kept ? finish_objects(part, error) : rt_fail_memory(error, "a part", sizeof *kept);
     if (status == RT_OK)
-        status = rt_append(&scene->parts, &scene->part_count, &scene->part_capacity, &kept, sizeof kept, error);
+        status =
+            rt_append(&scene->parts, &scene->part_count, &scene->part_capacity, &kept, sizeof kept, error);
     if (status == RT_OK) {
         *kept = *part;
         *part = (RtScene){0};
@@ -273,7 +274,7 @@ RtStatus rt_scene_sample(RtScene *scene, uint32_t width, uint32_t height, uint32
 
 typedef struct Append {
     RtScene *to;
-    const RtScene *of;            /* that owns the parts */
+    const RtScene *of; /* that owns the parts */
     const RtScene *from;
     const RtTransform *transform; /* or NULL */
     double scale;                 /* the uniform scale, 0 if uneven */
@@ -372,11 +373,11 @@ static RtStatus append_materials(const Append *a) {
         RtMaterial material = a->from->materials[i];
         if (!a->textures) material.texture = (RtTexture){0};
         uint32_t known = 0;
-        while (known < a->to->material_count && strcmp(a->to->materials[known].name, material.name) != 0)
+        while (known < a->to->material_count &&
+               memcmp(&a->to->materials[known], &material, sizeof material) != 0)
             known++;
         a->materials[i] = known;
-        if (known == a->to->material_count ||
-            memcmp(&a->to->materials[known], &material, sizeof material) != 0)
+        if (known == a->to->material_count)
             RT_TRY(rt_scene_add_material(a->to, &material, &a->materials[i], a->error));
     }
     return RT_OK;

@@ -49,7 +49,7 @@ static RtStatus reserve_object(RtGeometry *g, RtShape shape, RtError *error) {
 #define DEFINE_APPEND(CONSTANT, name, Type)                                                                  \
     static RtStatus reserve_##name(RtGeometry *g, RtError *error) {                                          \
         uint64_t needed = (uint64_t)g->name##_count + 1;                                                     \
-        RT_TRY(reserve_object(g, RT_SHAPE_##CONSTANT, error));                                                                    \
+        RT_TRY(reserve_object(g, RT_SHAPE_##CONSTANT, error));                                               \
         RT_TRY(rt_reserve(&g->name##s, &g->name##_capacity, needed, sizeof(Type), error));                   \
         return rt_reserve(&g->name##_ids, &g->name##_id_capacity, needed, sizeof(uint32_t), error);          \
     }                                                                                                        \
@@ -181,7 +181,8 @@ uint32_t rt_geometry_id_count(const RtGeometry *geometry) {
 }
 
 uint32_t rt_geometry_holder(const RtGeometry *geometry, uint32_t id) {
-    uint32_t plain = geometry->object_count - geometry->instance_count, low = 0, high = geometry->instance_count;
+    uint32_t plain = geometry->object_count - geometry->instance_count, low = 0,
+             high = geometry->instance_count;
     if (id < plain) return id;
     while (high - low > 1) { /* the last that begins at or before it */
         const uint32_t middle = low + (high - low) / 2;
@@ -205,16 +206,18 @@ static uint32_t most_crossings(const RtGeometry *geometry) {
 RtStatus rt_geometry_add_instance(RtGeometry *geometry, const RtGeometry *part, uint32_t part_index,
                                   const RtTransform *to_world, RtError *error) {
     const uint64_t ids = (uint64_t)rt_geometry_id_count(geometry) + rt_geometry_id_count(part);
-    RtInstance instance = {.to_world = *to_world,
-                           .geometry = part,
-                           .part = part_index,
-                           .first = rt_geometry_id_count(geometry)};
+    RtInstance instance = {
+        .to_world = *to_world, .geometry = part, .part = part_index, .first = rt_geometry_id_count(geometry)};
     assert(part->boxes);
     if (ids > UINT32_MAX - 2)
         return rt_fail(error, RT_BAD_INPUT, "the instances amount to more than 4e9 objects");
     if (part->nesting >= RT_MAX_NESTING)
         return rt_fail(error, RT_BAD_INPUT, "instances are nested in more than %d levels", RT_MAX_NESTING);
     RT_TRY(rt_transform_invert(to_world, &instance.to_part, error));
+    if (part->object_count == 0) return RT_OK; /* it would have no box */
+    const RtBox box = rt_moved_box(&part->box, to_world);
+    RT_TRY(check_point(box.lo, error));
+    RT_TRY(check_point(box.hi, error));
     RT_TRY(append_instance(geometry, &instance, error));
     const uint32_t crossings = most_crossings(part);
     if (part->nesting + 1 > geometry->nesting) geometry->nesting = part->nesting + 1;
