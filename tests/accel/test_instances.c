@@ -630,6 +630,53 @@ RT_TEST(parts_are_described_once_and_builds_include_them) {
     assert_int_equal(description.leaves, above.leaves + 3);
 }
 
+/* ---- the rays of verify ---- */
+
+/* Rays of a family over a scene. */
+static void fill(const RtScene *scene, const char *name, RtRay *rays, size_t count) {
+    OWNED_ACCEL RtAccel *brute = open_accel(scene, "brute");
+    OWNED_QUERY query = open_query(brute);
+    size_t family = 0;
+    while (strcmp(rt_ray_family_name(family), name) != 0) assert_true(++family < rt_ray_family_count());
+    rt_ray_family_fill(family, &query, 1, 0, count, rays);
+}
+
+enum { SOME = 200 };
+
+RT_TEST(rays_touch_the_surfaces_of_objects_in_instances) {
+    OWNED_SCENE scene = begin_scene();
+    RtScene part = begin_scene();
+    const RtVec3 v[3] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
+    RtTransform at = rt_transform_identity();
+    RtRay rays[SOME];
+    assert_ok(rt_scene_add_triangle(&part, 0, v, NULL, error));
+    add_part(&scene, &part);
+    assert_ok(rt_transform_rotate(&at, rt_vec3(1, 2, 3), 70, error));
+    place(&part, &scene, 0, at);
+    add_part(&scene, &part);
+    place(&scene, &scene, 1, sheared(2));
+    assert_ok(rt_scene_finish(&scene, error));
+    const RtTransform skew = sheared(2), both = rt_transform_compose(&at, &skew);
+    const RtVec3d normal = rt_normalized(rt_transform_normald(&both, rt_vec3d(0, 0, 1)));
+    fill(&scene, "tangent", rays, SOME);
+    for (int i = 0; i < SOME; i++)
+        assert_true(fabs(rt_dotd(normal, rt_normalized(rt_widen(rays[i].dir)))) < 1e-6);
+}
+
+RT_TEST(rays_start_on_the_boxes_of_objects_in_instances) {
+    OWNED_SCENE scene = begin_scene();
+    RtScene part = begin_scene();
+    RtRay rays[SOME];
+    int on_inner = 0;
+    for (int i = 0; i < 3; i++) add_ball(&part, 8 * (float)i, 0, 0, 1);
+    add_part(&scene, &part);
+    place(&scene, &scene, 0, moved(3, 0, 0));
+    assert_ok(rt_scene_finish(&scene, error));
+    fill(&scene, "from-box-face", rays, SOME);
+    for (int i = 0; i < SOME; i++) on_inner += rays[i].org.x == 10 || rays[i].org.x == 12;
+    assert_true(on_inner > 3);
+}
+
 /* ---- memory ---- */
 
 RT_TEST(a_shortage_of_memory_is_a_status_and_leaks_nothing) {
