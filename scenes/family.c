@@ -277,15 +277,15 @@ enum { PARTS = 6, IN_PART = 4, INSTANCES = 16 };
 static RtTransform some_matrix(Family *f, uint32_t i) {
     RtRandom *r = &f->random;
     RtTransform t = rt_transform_identity();
-    RtVec3d to = i % 4 == 0 ? on_quarters(r, 3) : rt_random_in_cube(r);
+    RtVec3d to = i % 4 == 0 ? on_quarters(r, 2) : rt_scaled(rt_random_in_cube(r), 0.5);
     RtVec3 axis = {{i % 3 == 0, i % 3 == 1, i % 3 == 2}}, factors;
     const bool far = f->recipe->offset > 0;
     const double scale = far ? ldexp(1, (int)rt_random_below(r, 17) - 8) : 1;
     if (i % 4 == 1) axis = rt_narrow(rt_random_direction(r));
     for (int a = 0; a < 3; a++) {
-        if (i % 4 == 1) factors.at[a] = ldexpf(rt_random_between(r, 0.5f, 1), -(int)rt_random_below(r, 4));
-        if (i % 4 != 1) factors.at[a] = i % 4 == 3 ? 0.25f : 1;
-        if (i % 4 == 2) t.m[a][(a + 1) % 3] = rt_random_betweend(r, 0, 2);
+        if (i % 4 == 1) factors.at[a] = ldexpf(rt_random_between(r, 0.5f, 1), -(int)rt_random_below(r, 3));
+        if (i % 4 != 1) factors.at[a] = i % 4 == 3 ? 0.5f : 1;
+        if (i % 4 == 2) t.m[a][(a + 1) % 3] = rt_random_betweend(r, 0, 1);
     }
     rt_build_check(f->b, rt_transform_scale(&t, factors, f->b->error));
     rt_build_check(
@@ -328,7 +328,8 @@ static void add_part(Family *f, uint32_t k) {
     if (k == 0)
         rt_build_box(f->b, rt_vec3d(-0.125, -0.125, -0.125), rt_vec3d(0.125, 0.125, 0.125), RT_SIDES_ALL);
     for (uint32_t i = 0; i < own; i++) {
-        const Placement at = placement_of(UNIFORM, &f->random, i, own);
+        Placement at = placement_of(UNIFORM, &f->random, i, own);
+        at.size *= 4;
         if (k == 2)
             add_tree(f, at, i);
         else
