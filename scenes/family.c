@@ -225,7 +225,7 @@ static RtStatus try_tree(Family *f, Placement at, uint32_t i, RtError *error) {
 
 /* Adds the next tree that is not flat. */
 static void add_tree(Family *f, Placement at, uint32_t i) {
-    RtStatus status = RT_BAD_INPUT;
+    RtStatus status = f->b->status == RT_OK ? RT_BAD_INPUT : f->b->status;
     for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++)
         status = try_tree(f, at, i, f->b->error);
     rt_build_check(f->b, status);
@@ -283,8 +283,7 @@ static RtTransform some_matrix(Family *f, uint32_t i) {
     const double scale = far ? ldexp(1, (int)rt_random_below(r, 17) - 8) : 1;
     if (i % 4 == 1) axis = rt_narrow(rt_random_direction(r));
     for (int a = 0; a < 3; a++) {
-        if (i % 4 == 1) factors.at[a] = ldexpf(rt_random_between(r, 0.5f, 1), -(int)rt_random_below(r, 3));
-        if (i % 4 != 1) factors.at[a] = i % 4 == 3 ? 0.5f : 1;
+        factors.at[a] = i % 4 == 1 ? rt_random_between(r, 0.125f, 1) : i % 4 == 3 ? 0.5f : 1;
         if (i % 4 == 2) t.m[a][(a + 1) % 3] = rt_random_betweend(r, 0, 1);
     }
     rt_build_check(f->b, rt_transform_scale(&t, factors, f->b->error));
@@ -300,7 +299,7 @@ static RtTransform some_matrix(Family *f, uint32_t i) {
 
 /* Every third is painted. Places beyond the largest coordinate are refused. */
 static void add_instance(Family *f, RtScene *to, const RtScene *of, uint32_t i) {
-    RtStatus status = RT_BAD_INPUT;
+    RtStatus status = f->b->status == RT_OK ? RT_BAD_INPUT : f->b->status;
     for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++) {
         RtTransform at = some_matrix(f, i);
         if (to == of) at = rt_transform_compose(&at, &f->b->transform);
@@ -335,7 +334,7 @@ static void add_part(Family *f, uint32_t k) {
         else
             add_mixed(f, at, i);
     }
-    for (uint32_t i = 0; k > 2 && f->b->status == RT_OK && i < IN_PART; i++) add_instance(f, &part, whole, i);
+    for (uint32_t i = 0; k > 2 && i < 2; i++) add_instance(f, &part, whole, i);
     f->b->scene = whole;
     f->b->transform = moved;
     rt_build_check(f->b, rt_scene_add_part(whole, &part, f->b->error));
