@@ -109,7 +109,8 @@ static void print_info(const RtScene *scene, const Counts *counts) {
         if (counts->of_shape[i]) printf("  %-13s %u\n", rt_shape_name((RtShape)i), counts->of_shape[i]);
     }
     for (uint32_t i = 0; i < scene->part_count && i < SHOWN; i++)
-        printf("  in part       %s: %u\n", scene->parts[i]->name, rt_geometry_id_count(&scene->parts[i]->geometry));
+        printf("  in part       %s: %u\n", scene->parts[i]->name,
+               rt_geometry_id_count(&scene->parts[i]->geometry));
     if (scene->part_count > SHOWN) printf("  ... (%u parts)\n", scene->part_count);
     if (g->csg_count) printf("  made of solids: %u\n", g->forest.set.solid_count);
     if (g->vertex_normal_count)
@@ -176,12 +177,12 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
         "{s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:f, s:f, s:o, s:o, s:o, s:o, s:o,"
         " s:{s:o, s:o, s:o, s:f, s:f, s:I, s:I}, s:I, s:o}",
         "scene", scene->name, "fingerprint", counts->fingerprint, "objects",
-        (json_int_t)rt_geometry_id_count(g),
-        "shapes", shapes, "solids", (json_int_t)g->forest.set.solid_count, "triangles_with_normals",
-        (json_int_t)g->vertex_normal_count, "triangles_without_area", (json_int_t)counts->zero_area, "area",
-        counts->area, "volume", counts->volume, "bounds", bounds, "materials", materials, "lights", lights,
-        "ambient", rt_cli_vector_json(scene->ambient), "background", rt_cli_vector_json(scene->background),
-        "camera", "from", rt_cli_vector_json(camera->from), "at", rt_cli_vector_json(camera->at), "up",
+        (json_int_t)rt_geometry_id_count(g), "shapes", shapes, "solids",
+        (json_int_t)g->forest.set.solid_count, "triangles_with_normals", (json_int_t)g->vertex_normal_count,
+        "triangles_without_area", (json_int_t)counts->zero_area, "area", counts->area, "volume",
+        counts->volume, "bounds", bounds, "materials", materials, "lights", lights, "ambient",
+        rt_cli_vector_json(scene->ambient), "background", rt_cli_vector_json(scene->background), "camera",
+        "from", rt_cli_vector_json(camera->from), "at", rt_cli_vector_json(camera->at), "up",
         rt_cli_vector_json(camera->up), "fov", (double)camera->fov, "near", (double)camera->near, "width",
         (json_int_t)camera->width, "height", (json_int_t)camera->height, "bytes",
         (json_int_t)rt_scene_bytes(scene), "warnings", warnings);

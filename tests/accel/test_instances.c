@@ -233,6 +233,39 @@ RT_TEST(extents_are_wide_enough_for_the_rounding_of_moved_rays) {
     assert_exact(&bench);
 }
 
+/* In a part that is far from its own zero, hits are off by thousands of times the thickness of the box: t is
+ * clamped to it, so the instance is before a polygon just behind it, though the moved ray ends at that. */
+RT_TEST(a_hit_beyond_the_box_of_the_instance_is_moved_into_it) {
+    const float far = 131072, at[2] = {0.5f, 0.50001f};
+    RtScene part = begin_scene();
+    OWNED_BENCH bench = {.scene = begin_scene()};
+    enum { RAYS = 256 };
+    int beyond = 0;
+    for (int k = 0; k < 2; k++) {
+        RtVec3 v[4];
+        for (int i = 0; i < 4; i++)
+            v[i] = rt_vec3(k == 0 ? far + at[k] : at[k], i == 1 || i == 2 ? 1 : -1, i >= 2 ? 1 : -1);
+        assert_ok(rt_scene_add_polygon(k == 0 ? &part : &bench.scene, 0, v, 4, error));
+    }
+    add_part(&bench.scene, &part);
+    place(&bench.scene, &bench.scene, 0, moved(-(double)far, 0, 0));
+    assert_ok(rt_scene_finish(&bench.scene, error));
+    bench.brute = open_accel(&bench.scene, "brute");
+    bench.rays = rt_alloc(RAYS, sizeof(RtRay));
+    for (int i = 0; i < RAYS; i++)
+        bench.rays[i] = ray_along(rt_vec3(-1 - (float)i / 1000, 0.1f, 0.2f), rt_vec3(1, 0, 0));
+    assert_ok(rt_reference_init(&bench.reference, bench.brute, bench.rays, RAYS, 0, error));
+    for (int i = 0; i < RAYS; i++) {
+        const double exact = 0.5 - (double)bench.rays[i].org.x;
+        const double moved_by = (double)(float)((double)bench.rays[i].org.x + (double)far) - (double)far;
+        assert_int_equal(bench.reference.hits[i].object, 1);
+        assert_true(fabs((double)bench.reference.hits[i].t - exact) < 5e-6);
+        beyond += 0.5 - moved_by > exact + 1e-4;
+    }
+    assert_true(beyond > RAYS / 4);
+    assert_exact(&bench);
+}
+
 /* ---- ids ---- */
 
 RT_TEST(ids_are_places_in_the_flattened_order) {
