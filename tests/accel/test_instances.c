@@ -3,76 +3,9 @@
  * matrices at the limits; what is refused; counts; memory. */
 #include "crossings_testing.h"
 #include "equivalence_testing.h"
+#include "instances_testing.h"
 
-#include "accel/plugin.h"
 #include "core/base/random.h"
-
-/* ---- scenes ---- */
-
-static RtTransform scaled(double x, double y, double z) {
-    return (RtTransform){{{x, 0, 0, 0}, {0, y, 0, 0}, {0, 0, z, 0}}};
-}
-
-static RtTransform moved(double x, double y, double z) {
-    return (RtTransform){{{1, 0, 0, x}, {0, 1, 0, y}, {0, 0, 1, z}}};
-}
-
-static RtTransform sheared(double by) {
-    return (RtTransform){{{1, by, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-}
-
-static void add_ball(RtScene *scene, float x, float y, float z, float radius) {
-    assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(x, y, z), radius, error));
-}
-
-/* The part is empty afterwards; its number. */
-static uint32_t add_part(RtScene *scene, RtScene *part) {
-    assert_ok(rt_scene_add_part(scene, part, error));
-    assert_int_equal(part->geometry.object_count, 0);
-    return scene->part_count - 1;
-}
-
-static void place(RtScene *to, const RtScene *of, uint32_t part, RtTransform at) {
-    assert_ok(rt_scene_add_instance(to, of, part, &at, RT_OWN_MATERIALS, error));
-}
-
-/* A scene with one part, a unit ball about the origin; not finished. */
-static RtScene begin_balls(void) {
-    RtScene scene = begin_scene(), part = begin_scene();
-    add_ball(&part, 0, 0, 0, 1);
-    add_part(&scene, &part);
-    return scene;
-}
-
-/* That scene with one instance. */
-static RtScene one_ball(RtTransform at) {
-    RtScene scene = begin_balls();
-    place(&scene, &scene, 0, at);
-    assert_ok(rt_scene_finish(&scene, error));
-    return scene;
-}
-
-/* A part of a ball, a triangle and two of the part below; `levels` of them, and two instances of the last. */
-static RtScene nested(uint32_t levels) {
-    RtScene scene = begin_balls();
-    for (uint32_t level = 1; level <= levels; level++) {
-        RtScene part = begin_scene(), *to = level < levels ? &part : &scene;
-        const RtVec3 v[3] = {{{0, 0, 1}}, {{1, 0, 1}}, {{0, 1, 1}}};
-        add_ball(to, 0, 0, -1, 0.5f);
-        assert_ok(rt_scene_add_triangle(to, 0, v, NULL, error));
-        RtTransform at = rt_transform_identity();
-        assert_ok(rt_transform_rotate(&at, rt_vec3(1, 2, 3), 20, error));
-        assert_ok(rt_transform_translate(&at, rt_vec3(0.4f, 0.1f, 0), error));
-        place(to, &scene, level - 1, at);
-        place(to, &scene, level - 1, scaled(0.5, 0.9, 1.1));
-        if (level < levels)
-            add_part(&scene, &part);
-        else
-            rt_scene_clear(&part);
-    }
-    assert_ok(rt_scene_finish(&scene, error));
-    return scene;
-}
 
 /* ---- answers ---- */
 
@@ -502,13 +435,11 @@ RT_TEST(more_objects_than_ids_are_refused) {
     assert_int_equal(rt_geometry_id_count(&scene.geometry), 15U << 28);
     for (int i = 0; i < 15; i++) place(&scene, &scene, 6, here);
     assert_ok(rt_scene_finish(&scene, error));
-    const RtHit hit = {8, 0};
     const RtRay ray = ray_along(rt_vec3(0, 0, 9), rt_vec3(0, 0, -1));
     RtPlace at;
     rt_scene_place(&scene, (15U << 28) + (15U << 24) - 1, &ray, &at);
     assert_int_equal(at.object, 0);
     assert_ptr_equal(at.scene, scene.parts[0]);
-    (void)hit;
 }
 
 RT_TEST(accelerators_that_serve_no_instances_say_so) {
