@@ -18,6 +18,8 @@
  *    proportional to m, but at most 2^-150; 2^-140 is added for that. Rounding the direction moves the point
  *    of the hit by at most 2^-51 m, which is covered. Extents are built in double and inflated by 2^-46 c
  *    (extent.c); slabs are then rounded outward to float32.
+ *    An instance may be hit wherever the thick ray is in its box, which its extent contains: within sqrt(3)
+ *    (2^-20 m + 2^-23 |org|) of it, and roundings by 2^-24 |org| and 3 * 2^-24 m. So 2^-21 |org| is added.
  * 2. The box of the object or group, along the ray's major axis alone, begins beyond the best t or ends
  *    before tmin. The t of a hit is clamped to the object's box, so the theorem applies. The t at which the
  *    line enters the extent is no bound: a triangle seen edge-on may be hit at any t in its box. */
@@ -103,7 +105,8 @@ typedef struct RtLine {
     double inverse[RT_MAX_SLABS]; /* ... 1 / (dir . normal), possibly infinite */
 } RtLine;
 
-static inline double rt_line_pad(RtVec3d org, const RtBox *scene_box) {
+static inline double rt_line_pad(RtVec3d org, const RtGeometry *geometry) {
+    const RtBox *scene_box = &geometry->box;
     double away = 0, most = 0;
     for (int a = 0; a < 3; a++) {
         double lo = fabs((double)scene_box->lo.at[a] - org.at[a]);
@@ -113,15 +116,15 @@ static inline double rt_line_pad(RtVec3d org, const RtBox *scene_box) {
         away = hi > away ? hi : away;
         most = at > most ? at : most;
     }
-    return 0x1p-18 * away + 0x1p-48 * most + 0x1p-140;
+    return 0x1p-18 * away + (geometry->instance_count > 0 ? 0x1p-21 : 0x1p-48) * most + 0x1p-140;
 }
 
-static inline RtLine rt_line(const RtExtentSet *set, RtExtentKind kind, const RtBox *scene_box,
+static inline RtLine rt_line(const RtExtentSet *set, RtExtentKind kind, const RtGeometry *geometry,
                              const RtPreparedRay *ray) {
     RtLine line;
     line.org = rt_widen(rt_vec3_load(ray->org));
     line.dir = rt_widen(rt_vec3_load(ray->dir));
-    line.pad = rt_line_pad(line.org, scene_box);
+    line.pad = rt_line_pad(line.org, geometry);
     if (kind == RT_EXTENT_SPHERE) line.dir_squared = rt_dotd(line.dir, line.dir);
     for (uint32_t i = 0; kind == RT_EXTENT_SLABS && i < set->slabs_each; i++) {
         line.along[i] = rt_dotd(line.org, rt_slab_normals[i]);

@@ -88,7 +88,8 @@ typedef enum Make {
     AXIS_ALIGNED,
     TREES,
     MESH,
-    NEEDLES
+    NEEDLES,
+    INSTANCED
 } Make;
 
 /* The scale and offset of the whole: scale * p + (offset, offset, offset). If drawn from the seed, the
@@ -224,7 +225,7 @@ static RtStatus try_tree(Family *f, Placement at, uint32_t i, RtError *error) {
 
 /* Adds the next tree that is not flat. */
 static void add_tree(Family *f, Placement at, uint32_t i) {
-    RtStatus status = RT_BAD_INPUT;
+    RtStatus status = f->b->status == RT_OK ? RT_BAD_INPUT : f->b->status;
     for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++)
         status = try_tree(f, at, i, f->b->error);
     rt_build_check(f->b, status);
@@ -261,8 +262,82 @@ static void add_object(Family *f, uint32_t i) {
     case AXIS_ALIGNED: add_axis_aligned(f, at, i); break;
     case TREES: add_tree(f, at, i); break;
     case NEEDLES: add_needle(f, at, i); break;
+    case INSTANCED: add_mixed(f, at, i); break;
     case MESH: break;
     }
+}
+
+/* ---- instances ---- */
+
+enum { PARTS = 6, IN_PART = 4, INSTANCES = 16 };
+
+/* By turns on the lattice, with quarter turns, where faces are shared and instances coincide; turned and
+ * scaled unevenly; sheared; and small. Far ones are also scaled by up to 2^8, and moved by up to 2^10 times
+ * that. */
+static RtTransform some_matrix(Family *f, uint32_t i) {
+    RtRandom *r = &f->random;
+    RtTransform t = rt_transform_identity();
+    RtVec3d to = i % 4 == 0 ? on_quarters(r, 2) : rt_scaled(rt_random_in_cube(r), 0.5);
+    RtVec3 axis = {{i % 3 == 0, i % 3 == 1, i % 3 == 2}}, factors;
+    const bool far = f->recipe->offset > 0;
+    const double scale = far ? ldexp(1, (int)rt_random_below(r, 17) - 8) : 1;
+    if (i % 4 == 1) axis = rt_narrow(rt_random_direction(r));
+    for (int a = 0; a < 3; a++) {
+        factors.at[a] = i % 4 == 1 ? rt_random_between(r, 0.125f, 1) : i % 4 == 3 ? 0.5f : 1;
+        if (i % 4 == 2) t.m[a][(a + 1) % 3] = rt_random_betweend(r, 0, 1);
+    }
+    rt_build_check(f->b, rt_transform_scale(&t, factors, f->b->error));
+    rt_build_check(
+        f->b, rt_transform_rotate(&t, axis, 90.0 * rt_random_below(r, 4) + (i % 4 == 1) * 17, f->b->error));
+    if (far) to = rt_scaled(to, ldexp(1, (int)rt_random_below(r, 11)));
+    for (int a = 0; a < 3; a++) {
+        for (int column = 0; column < 3; column++) t.m[a][column] *= scale;
+        t.m[a][3] = scale * to.at[a];
+    }
+    return t;
+}
+
+/* Every third is painted. Places beyond the largest coordinate are refused. */
+static void add_instance(Family *f, RtScene *to, const RtScene *of, uint32_t i) {
+    RtStatus status = f->b->status == RT_OK ? RT_BAD_INPUT : f->b->status;
+    for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++) {
+        RtTransform at = some_matrix(f, i);
+        if (to == of) at = rt_transform_compose(&at, &f->b->transform);
+        const uint32_t part = rt_random_below(&f->random, of->part_count);
+        status = rt_scene_add_instance(to, of, part, &at, i % 3 ? RT_OWN_MATERIALS : 0, f->b->error);
+    }
+    rt_build_check(f->b, status);
+}
+
+/* A mirror, which is number 0, for painted instances; and grey for objects. */
+static void add_materials(RtSceneBuilder *b) {
+    const RtMaterial mirror = RT_MATERIAL("mirror", 0.5f, 0.5f, 0.5f, 0.1f, 0.5f, 0, 1, 0.5f);
+    rt_build_material(b, mirror);
+    rt_build_material(b, rt_default_material());
+}
+
+/* A cube, whose copies on the lattice share faces; shapes; trees; and parts of shapes and earlier parts. */
+static void add_part(Family *f, uint32_t k) {
+    RtScene *whole = f->b->scene, part = {0};
+    const RtTransform moved = f->b->transform;
+    const uint32_t own = k == 0 || k == PARTS - 1 ? 0 : IN_PART;
+    f->b->scene = &part;
+    f->b->transform = rt_transform_identity();
+    add_materials(f->b);
+    if (k == 0)
+        rt_build_box(f->b, rt_vec3d(-0.125, -0.125, -0.125), rt_vec3d(0.125, 0.125, 0.125), RT_SIDES_ALL);
+    for (uint32_t i = 0; i < own; i++) {
+        Placement at = placement_of(UNIFORM, &f->random, i, own);
+        at.size *= 4;
+        if (k == 2)
+            add_tree(f, at, i);
+        else
+            add_mixed(f, at, i);
+    }
+    for (uint32_t i = 0; k > 2 && i < 2; i++) add_instance(f, &part, whole, i);
+    f->b->scene = whole;
+    f->b->transform = moved;
+    rt_build_check(f->b, rt_scene_add_part(whole, &part, f->b->error));
 }
 
 /* ---- lights and cameras ---- */
@@ -329,7 +404,9 @@ static void add_eye(RtSceneBuilder *b) {
     X("stacked", 40, AXIS_ALIGNED, STACKED, 1, 0, GIVEN, CAMERA)                                             \
     X("lit-within", 60, ROUND_AND_FLAT, UNIFORM, 1, 0, GIVEN, LIGHTS)                                        \
     X("eye-within", 80, AXIS_ALIGNED, AROUND_THE_ORIGIN, 1, 0, GIVEN, EYE)                                   \
-    X("eye-among", 80, ROUND_AND_FLAT, AROUND_THE_ORIGIN, 1, 0, GIVEN, EYE)
+    X("eye-among", 80, ROUND_AND_FLAT, AROUND_THE_ORIGIN, 1, 0, GIVEN, EYE)                                  \
+    X("instanced", 8, INSTANCED, UNIFORM, 1, 0, GIVEN, CAMERA)                                               \
+    X("instanced-far", 8, INSTANCED, UNIFORM, 1, 1e5, GIVEN, CAMERA)
 
 #define AS_RECIPE(...)       {__VA_ARGS__},
 #define AS_CHOICE(name, ...) "|" name
@@ -356,6 +433,7 @@ static uint64_t object_count(const RtValue *values) {
     const Recipe *recipe = &recipes[values[KIND].choice];
     const uint64_t n = recipe->count;
     if (recipe->make == MESH) return 8 * n * n;
+    if (recipe->make == INSTANCED) return n + INSTANCES;
     return recipe->make == AXIS_ALIGNED ? n + (n + 1) / 2 : n; /* every other one is two triangles */
 }
 
@@ -366,9 +444,15 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
     set_transform(&f);
     b->scene->camera.width = 40;
     b->scene->camera.height = 30;
-    rt_build_material(b, rt_default_material());
+    if (recipe->make == INSTANCED)
+        add_materials(b);
+    else
+        rt_build_material(b, rt_default_material());
+    for (uint32_t k = 0; recipe->make == INSTANCED && k < PARTS; k++) add_part(&f, k);
     if (recipe->make == MESH) add_mesh(&f, recipe->count);
     for (uint32_t i = 0; recipe->make != MESH && i < recipe->count; i++) add_object(&f, i);
+    for (uint32_t i = 0; recipe->make == INSTANCED && i < INSTANCES; i++)
+        add_instance(&f, b->scene, b->scene, i);
     if (recipe->around == LIGHTS) add_lights(b);
     if (recipe->around == EYE) add_eye(b);
 }

@@ -126,7 +126,7 @@ RT_KERNEL void traverse(RtExtentKind kind, const RtClusters *self, const RtPrepa
     uint32_t stacked = 0;
     float enter;
     if (self->hierarchy.node_count == 0) return;
-    RtLine line = rt_line(&self->set, kind, &geometry->box, ray);
+    RtLine line = rt_line(&self->set, kind, geometry, ray);
     if (!meets(kind, self, 0, ray, &line, ray->tmax, &enter, tally)) return;
     stack[stacked++] = (StackEntry){0, enter};
     while (stacked > 0) {

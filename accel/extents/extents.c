@@ -14,7 +14,7 @@ RT_KERNEL void scan(RtExtentKind kind, const RtExtents *self, const RtPreparedRa
                     RtTally *tally) {
     const RtGeometry *geometry = &self->base.scene->geometry;
     const RtExtentSet *set = &self->set;
-    RtLine line = rt_line(set, kind, &geometry->box, ray);
+    RtLine line = rt_line(set, kind, geometry, ray);
     float enter;
     for (uint32_t id = 0; id < geometry->object_count; id++) {
         RT_COUNT(tally, steps, 1);

@@ -90,7 +90,7 @@ static void count_lines(const Survey *survey, uint32_t index, uint64_t lines) {
         bool met = rt_test_object(geometry, id, &ray, true, &hit, NULL);
         for (size_t c = 0; c < survey->table->choice_count; c++) {
             const RtExtentSet *set = &survey->fitted[c].set;
-            RtLine line = rt_line(set, set->kind, &geometry->box, &ray);
+            RtLine line = rt_line(set, set->kind, geometry, &ray);
             float enter;
             survey->out[c].lines++;
             survey->out[c].object_hits += met;
@@ -183,7 +183,7 @@ RT_KERNEL void test_list(RtExtentKind kind, const Extents *extents) {
     Bench *bench = extents->bench;
     for (uint32_t k = 0; k < LINES; k++) {
         RtPreparedRay ray = rt_ray_prepare(&bench->lines[k], &bench->geometry->box);
-        RtLine line = rt_line(&extents->set, kind, &bench->geometry->box, &ray);
+        RtLine line = rt_line(&extents->set, kind, bench->geometry, &ray);
         uint32_t met = 0;
         for (uint32_t i = 0; i < bench->count; i++) {
             float enter;

@@ -12,10 +12,16 @@
 typedef struct Generator {
     RtQuery *query;
     const RtScene *scene;
-    const RtGeometry *geometry; /* the scene's */
-    RtView view;                /* of its camera; no samples if the camera is invalid */
-    RtVec3d center;             /* of the scene's box */
-    double size;                /* half its diagonal */
+    const RtGeometry *geometry; /* the scene's, or while something in an instance is chosen, its part's */
+    /* The object of the last point, if that is in an instance: where it is, and which point there. */
+    const RtGeometry *part; /* NULL: it is an object of the scene itself */
+    uint32_t object;
+    RtVec3d inside;
+    RtTransform to_world;
+    RtBox moved;    /* the last box in an instance */
+    RtView view;    /* of its camera; no samples if the camera is invalid */
+    RtVec3d center; /* of the scene's box */
+    double size;    /* half its diagonal */
     RtRandom random;
     RtRandom shared; /* the same for RT_RAY_BUNDLE rays in a row */
 } Generator;
@@ -49,13 +55,19 @@ static RtVec3d point_in_scene(Generator *m) {
     return point_in_box(m, &m->geometry->box);
 }
 
-/* The box of a random object, or of the scene. */
+/* The box of a random object, perhaps in an instance, or of the scene. */
 static const RtBox *some_box(Generator *m) {
     const RtGeometry *g = m->geometry;
     static const RtBox unit = {{-1, -1, -1}, {1, 1, 1}};
     if (g->object_count == 0) return &unit;
     if (below(m, 4) == 0) return &g->box;
-    return &g->boxes[below(m, g->object_count)];
+    const uint32_t id = below(m, g->object_count);
+    if (!rt_is_instance(g, id) || below(m, 2)) return &g->boxes[id];
+    const RtInstance *instance = &g->instances[rt_ref_index(g->objects[id])];
+    m->geometry = instance->geometry;
+    m->moved = rt_moved_box(some_box(m), &instance->to_world);
+    m->geometry = g;
+    return &m->moved;
 }
 
 /* A point of a cone's side, or of one of its circles if `rim`. */
@@ -114,6 +126,13 @@ static RtVec3d point_of_instance(Generator *m, const RtInstance *instance, Where
     uint32_t id;
     m->geometry = instance->geometry;
     const RtVec3d inside = point_of_object(m, where, &id);
+    if (!m->part) {
+        m->part = m->geometry;
+        m->object = id;
+        m->inside = inside;
+        m->to_world = rt_transform_identity();
+    }
+    m->to_world = rt_transform_compose(&m->to_world, &instance->to_world);
     m->geometry = outside;
     return rt_transform_pointd(&instance->to_world, inside);
 }
@@ -121,6 +140,7 @@ static RtVec3d point_of_instance(Generator *m, const RtInstance *instance, Where
 /* A point of a random object, and its id (RT_NO_OBJECT if there is none). */
 static RtVec3d point_of_object(Generator *m, Where where, uint32_t *id) {
     const RtGeometry *g = m->geometry;
+    m->part = NULL;
     *id = RT_NO_OBJECT;
     if (g->object_count == 0) return point_in_scene(m);
     *id = below(m, g->object_count);
@@ -229,8 +249,10 @@ static RtVec3d direction_along(Generator *m, uint32_t id, RtVec3d p, RtVec3d *no
     RtVec3d dir = direction(m);
     *normal = rt_vec3d(0, 0, 0);
     if (id == RT_NO_OBJECT) return dir;
-    RtRay at = ray_along(p, dir);
-    *normal = rt_object_normals(m->geometry, id, &at, 0, rt_query_hit_memory(m->query)).geometric;
+    const RtGeometry *g = m->part ? m->part : m->geometry;
+    RtRay at = ray_along(m->part ? m->inside : p, dir);
+    *normal = rt_object_normals(g, m->part ? m->object : id, &at, 0, rt_query_hit_memory(m->query)).geometric;
+    if (m->part) *normal = rt_normalized(rt_transform_normald(&m->to_world, *normal));
     return rt_add_scaledd(dir, *normal, -rt_dotd(dir, *normal));
 }
 

@@ -17,8 +17,8 @@ static const double within = 31.0 / 32, beyond = 33.0 / 32;
 /* The line along z from `org`, in a scene of this box. */
 static RtLine line_along_z(const RtExtentSet *set, RtVec3 org, RtBox scene_box) {
     const RtRay ray = {.org = org, .dir = {{0, 0, 1}}, .tmax = INFINITY};
-    RtPreparedRay prepared = rt_ray_prepare(&ray, &scene_box);
-    return rt_line(set, set->kind, &scene_box, &prepared);
+    const RtPreparedRay prepared = rt_ray_prepare(&ray, &scene_box);
+    return rt_line(set, set->kind, &(RtGeometry){.box = scene_box}, &prepared);
 }
 
 static bool meets_ball(RtVec3 org, RtBox scene_box, double off, double radius) {

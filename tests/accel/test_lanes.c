@@ -36,9 +36,9 @@ static Asked begin_asking(const RtRay *rays, size_t count) {
 }
 
 /* One ray, one object after the other. */
-static void by_definition(const RtGeometry *geometry, Asked *asked) {
-    OWNED_MEMORY RtHitMemory *hit_memory;
-    assert_ok(rt_hit_memory_alloc(geometry, &hit_memory, error));
+static void by_definition(const RtQuery *query, Asked *asked) {
+    const RtGeometry *geometry = &query->accel->scene->geometry;
+    RtHitMemory *hit_memory = rt_query_hit_memory(query);
     for (size_t i = 0; i < asked->count; i++) {
         const RtRay *ray = &asked->rays[i];
         RtPreparedRay prepared;
@@ -119,7 +119,7 @@ static void assert_lanes_change_nothing(const RtScene *scene, const RtRay *rays,
     OWNED_ACCEL RtAccel *brute = open_accel(scene, "brute:lanes=1");
     OWNED_ACCEL RtAccel *extents = open_accel(scene, "extents:lanes=1");
     OWNED_QUERY of_brute = open_query(brute), of_extents = open_query(extents);
-    by_definition(&scene->geometry, &by_tests);
+    by_definition(&of_brute, &by_tests);
     assert_kernels_are_right(brute->kernels, &of_brute, &by_tests, "brute:lanes=1", count);
     assert_lanes_are_right("brute", brute_kernels, scene, &by_tests);
     by_kernels(extents->kernels, &of_extents, &by_boxes, count, true);

@@ -130,9 +130,10 @@ RT_TEST(boxes_about_hits_are_met) {
             RtVec3 size = rt_box_size(scene.geometry.box);
             double far = fabs((double)p.x) + fabs((double)p.y) + fabs((double)p.z);
             double near = 0x1p-16 * rt_lengthd(rt_widen(size)) + 0x1p-22 * far;
-            if (!object_meets_box(&scene.geometry, hits[i].object, &point, near))
-                fail_msg("%s: ray %zu hits object %u where it is not", scene.name, i, hits[i].object);
-            assert_parts_hold(&scene, hits[i].object, p, near);
+            const uint32_t object = rt_geometry_holder(&scene.geometry, hits[i].object);
+            if (!object_meets_box(&scene.geometry, object, &point, near))
+                fail_msg("%s: ray %zu hits object %u where it is not", scene.name, i, object);
+            assert_parts_hold(&scene, object, p, near);
         }
     }
 }

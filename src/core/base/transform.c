@@ -99,9 +99,10 @@ RtStatus rt_transform_invert(const RtTransform *transform, RtTransform *inverse,
             inverse->m[row][column] = rows[row].at[column] / determinant;
         inverse->m[row][3] = -rt_dotd(rows[row], at) / determinant;
     }
-    const double most = stretch(transform), least = 1 / stretch(inverse);
-    if (determinant > 0 && most <= RT_MAX_STRETCH && least >= 1 / RT_MAX_STRETCH &&
-        most <= least * RT_MAX_STRETCH && isfinite(rt_lengthd(rt_transform_column(inverse, 3))))
+    const double most = stretch(transform), least = 1 / stretch(inverse),
+                 limit = RT_MAX_STRETCH * (1 + 0x1p-22);
+    if (determinant > 0 && most <= limit && least >= 1 / limit && most <= least * limit &&
+        isfinite(inverse->m[0][3] + inverse->m[1][3] + inverse->m[2][3]))
         return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,

@@ -218,6 +218,10 @@ RtStatus rt_geometry_add_instance(RtGeometry *geometry, const RtGeometry *part, 
     for (int column = 0; column < 4; column++) {
         for (int row = 0; row < 3; row++) instance.columns[column][row] = to_part.m[row][column];
     }
+    if (part->object_count == 0) return RT_OK; /* it would have no box */
+    const RtBox box = rt_moved_box(&part->box, to_world);
+    RT_TRY(check_point(box.lo, error));
+    RT_TRY(check_point(box.hi, error));
     RT_TRY(append_instance(geometry, &instance, error));
     const uint32_t crossings = most_crossings(part);
     if (part->nesting + 1 > geometry->nesting) geometry->nesting = part->nesting + 1;

@@ -108,8 +108,8 @@ RtStatus rt_geometry_add_csg(RtGeometry *geometry, const RtCsgBuilder *builder, 
                              RtError *error);
 
 /* Adds an instance of a part, which must be finished and outlive the geometry; after it, only instances may
- * be added. Rejects a matrix that rounding would spoil (rt_transform_invert), and too many objects or levels.
- */
+ * be added. One of a part without objects is left out. Rejects a matrix that rounding would spoil
+ * (rt_transform_invert), a box beyond RT_MAX_COORDINATE, and too many objects or levels. */
 RtStatus rt_geometry_add_instance(RtGeometry *geometry, const RtGeometry *part, uint32_t part_index,
                                   const RtTransform *to_world, RtError *error);
 
@@ -161,6 +161,9 @@ RtVec3d rt_triangle_weights(const RtTriangle *triangle, RtVec3d point);
 RtBox rt_object_box(const RtGeometry *geometry, uint32_t id);
 RtBall rt_object_ball(const RtGeometry *geometry, uint32_t id);
 double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direction);
+
+/* The box of a box that is moved, which is not empty. */
+RtBox rt_moved_box(const RtBox *box, const RtTransform *transform);
 
 /* Three orthonormal axes that suit an oriented box of object `id`: along its longest edge or axis and its
  * normal; for a CSG tree, those of its largest solid. */

@@ -199,27 +199,28 @@ static double csg_support(const RtGeometry *g, uint32_t index, RtVec3d direction
     return rt_csg_support(&g->forest, &g->csgs[index], direction);
 }
 
-/* The box of the part's box. */
-static RtBox instance_box(const RtGeometry *g, uint32_t index) {
-    const RtInstance *instance = &g->instances[index];
-    const RtBox *part = &instance->geometry->box;
-    RtBox box = RT_EMPTY_BOX;
-    for (int corner = 0; corner < 8 && !rt_box_is_empty(*part); corner++) {
+RtBox rt_moved_box(const RtBox *box, const RtTransform *transform) {
+    RtBox moved = RT_EMPTY_BOX;
+    for (int corner = 0; corner < 8; corner++) {
         RtVec3d at;
-        for (int a = 0; a < 3; a++) at.at[a] = (double)(corner >> a & 1 ? part->hi : part->lo).at[a];
-        at = rt_transform_pointd(&instance->to_world, at);
+        for (int a = 0; a < 3; a++) at.at[a] = (double)(corner >> a & 1 ? box->hi : box->lo).at[a];
+        at = rt_transform_pointd(transform, at);
         for (int a = 0; a < 3; a++) {
-            box.lo.at[a] = rt_minf(box.lo.at[a], rt_float_below(at.at[a]));
-            box.hi.at[a] = rt_maxf(box.hi.at[a], rt_float_above(at.at[a]));
+            moved.lo.at[a] = rt_minf(moved.lo.at[a], rt_float_below(at.at[a]));
+            moved.hi.at[a] = rt_maxf(moved.hi.at[a], rt_float_above(at.at[a]));
         }
     }
-    return box;
+    return moved;
+}
+
+static RtBox instance_box(const RtGeometry *g, uint32_t index) {
+    return rt_moved_box(&g->instances[index].geometry->box, &g->instances[index].to_world);
 }
 
 static RtBall instance_ball(const RtGeometry *g, uint32_t index) {
     const RtBox box = instance_box(g, index);
-    const RtVec3d center = rt_widen(rt_box_center(box));
-    return (RtBall){center, rt_lengthd(rt_subd(rt_widen(box.hi), center)) * (1 + 0x1p-20)};
+    const RtVec3d lo = rt_widen(box.lo), hi = rt_widen(box.hi), center = rt_scaled(rt_addd(lo, hi), 0.5);
+    return (RtBall){center, rt_lengthd(rt_subd(hi, center)) * (1 + 0x1p-50)};
 }
 
 static double instance_support(const RtGeometry *g, uint32_t index, RtVec3d direction) {
