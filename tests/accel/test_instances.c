@@ -451,7 +451,7 @@ RT_TEST(accelerators_that_serve_no_instances_say_so) {
         const RtStatus status = rt_accel_open(flat[i], &scene, &accel, &why);
         if (status == RT_NOT_AVAILABLE) continue;
         assert_int_equal(status, RT_BAD_INPUT);
-        assert_non_null(strstr(why.message, "serves no scene with instances: `raytally convert`"));
+        assert_non_null(strstr(why.message, "serves no scene with instances: `raytally convert --flatten`"));
         assert_null(accel);
     }
 }

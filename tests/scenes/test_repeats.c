@@ -26,7 +26,7 @@ RT_TEST(copies_in_place_of_instances_have_the_same_ids_materials_and_lights) {
         for (uint32_t id = 0; id < count; id++) {
             RtPlace place;
             rt_scene_place(&on, id, &(RtRay){.dir = {1, 0, 0}, .tmax = 1}, &place);
-            const char *name = place.scene->materials[place.scene->material_of[place.object]].name;
+            const char *name = on.materials[place.scene->material_of[place.object]].name;
             assert_string_equal(flat.materials[flat.material_of[id]].name, name);
         }
     }
