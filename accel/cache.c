@@ -30,15 +30,16 @@ static void begin(const RtAccel *accel, void *scratch) {
 RT_KERNEL void find_occluder(const RtAccel *self, const RtScratch *scratch, const RtRay *ray,
                              uint32_t *occluder, RtTally *tallies) {
     const RtScene *scene = self->scene;
+    const RtGeometry *g = &scene->geometry;
     RtTally *tally = tallies ? &tallies[RT_RAY_SHADOW] : NULL;
     uint32_t *last = ray->source < scene->light_count ? (uint32_t *)scratch->own + ray->source : NULL;
     if (last && *last != RT_NO_OBJECT) {
         RtPreparedRay prepared;
-        rt_hit_ray(&prepared, &scene->geometry, ray, scratch->hit_memory);
+        rt_hit_ray(&prepared, g, ray, scratch->hit_memory);
         RtHit hit = RT_MISS;
         RT_COUNT(tally, steps, 1);
         RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "object", .index = *last);
-        if (rt_test_object(&scene->geometry, *last, &prepared, true, &hit, tally)) {
+        if (rt_test_object(g, *last, &prepared, true, &hit, tally)) {
             rt_count_answer(true, tally);
             *occluder = hit.object;
             return;
@@ -47,8 +48,7 @@ RT_KERNEL void find_occluder(const RtAccel *self, const RtScratch *scratch, cons
     RT_COUNT(tally, passed_on, 1);
     RT_OBSERVE(tally, .kind = RT_TRACED_PASSED_ON, .what = self->ops->name);
     rt_hand_down(self, scratch, ray, 1, NULL, occluder, tallies);
-    if (last && *occluder < rt_geometry_id_count(&scene->geometry))
-        *last = rt_geometry_holder(&scene->geometry, *occluder);
+    if (last && *occluder < rt_geometry_id_count(g)) *last = rt_geometry_holder(g, *occluder);
 }
 
 /* Queries for nearest hits, and runs of rays of other kinds, are handed down. */
