@@ -164,6 +164,7 @@ static RtStatus open_parts(RtQuery *query, RtError *error) {
     if (count == 0) return RT_OK;
     query->parts = rt_alloc(count, sizeof(RtQuery));
     if (!query->parts) return rt_fail_memory(error, "queries of parts", count * sizeof(RtQuery));
+    query->part_count = count;
     if (query->scratch[0].hit_memory) query->scratch[0].hit_memory->parts = query->parts;
     for (uint32_t i = 0; i < count; i++) {
         RT_TRY(rt_query_init(&query->parts[i], base->parts[i], error));
@@ -200,8 +201,7 @@ RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
 
 void rt_query_clear(RtQuery *query) {
     close_layers(query, NULL);
-    for (uint32_t i = 0; query->parts && i < query->accel->scene->part_count; i++)
-        rt_query_clear(&query->parts[i]);
+    for (uint32_t i = 0; i < query->part_count; i++) rt_query_clear(&query->parts[i]);
     rt_free(query->parts);
     rt_free(query->scratch[0].own);
     rt_free(query->scratch[0].hit_memory);
@@ -213,8 +213,7 @@ void rt_query_begin(RtQuery *query) {
     for (const RtAccel *layer = query->accel; layer; layer = layer->below, scratch++) {
         if (layer->ops->begin) layer->ops->begin(layer, scratch->own);
     }
-    for (uint32_t i = 0; query->parts && i < query->accel->scene->part_count; i++)
-        rt_query_begin(&query->parts[i]);
+    for (uint32_t i = 0; i < query->part_count; i++) rt_query_begin(&query->parts[i]);
 }
 
 void rt_nearest(RtQuery *query, const RtRay *rays, size_t count, RtHit *hits, RtTally *tallies) {

@@ -371,7 +371,8 @@ RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, si
 typedef struct RtQuery {
     const RtAccel *accel;
     RtScratch scratch[RT_MAX_LAYERS]; /* of each layer, topmost first; scratch[0] owns all memory */
-    struct RtQuery *parts;            /* [scene->part_count] owned, a query in each part; NULL in those */
+    struct RtQuery *parts; /* [part_count] owned, a query in each part of the scene; NULL in those */
+    uint32_t part_count;
 } RtQuery;
 
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error);

@@ -142,8 +142,8 @@ static RtStatus build_parts(const RtSpec *spec, int threads, RtAccel *base, RtEr
     const RtScene *scene = base->scene;
     const RtSpecLayer *layer = spec->of_parts ? &spec->part : &spec->layers[spec->layer_count - 1];
     if (scene->part_count == 0) return RT_OK;
-    base->parts = rt_alloc(scene->part_count, sizeof *base->parts);
-    if (!base->parts) return rt_fail_memory(error, "parts", scene->part_count * sizeof *base->parts);
+    base->parts = rt_alloc(scene->part_count, sizeof(void *));
+    if (!base->parts) return rt_fail_memory(error, "parts", scene->part_count * sizeof(void *));
     for (uint32_t i = 0; i < scene->part_count; i++) {
         const RtScene *part = scene->parts[i];
         const RtBuild what = {part, layer->values, threads, rt_accel_byte_limit(part)};

@@ -278,7 +278,8 @@ static RtTransform some_matrix(Family *f, uint32_t i) {
     RtRandom *r = &f->random;
     RtTransform t = rt_transform_identity();
     RtVec3d to = i % 4 == 0 ? on_quarters(r, 2) : rt_scaled(rt_random_in_cube(r), 0.5);
-    RtVec3 axis = {{i % 3 == 0, i % 3 == 1, i % 3 == 2}}, factors;
+    RtVec3 axis = {{0, 0, 0}}, factors;
+    axis.at[i % 3] = 1;
     const bool far = f->recipe->offset > 0;
     const double scale = far ? ldexp(1, (int)rt_random_below(r, 17) - 8) : 1;
     if (i % 4 == 1) axis = rt_narrow(rt_random_direction(r));

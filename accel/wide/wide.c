@@ -119,7 +119,7 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     self->in_flight = (uint32_t)values[PARAM_IN_FLIGHT].i;
     if (self->in_flight > 1 && instances) self->in_flight *= RT_WIDE_GATHER;
     if (self->in_flight > RT_WIDE_MAX_STATES) self->in_flight = RT_WIDE_MAX_STATES;
-    accel->scratch_bytes += self->in_flight * RT_WIDE_STATE_BYTES;
+    accel->scratch_bytes += (size_t)self->in_flight * RT_WIDE_STATE_BYTES;
     self->order = values[PARAM_ORDER].flag;
     self->prefetch = values[PARAM_PREFETCH].flag;
     self->fused = may_fuse(&what->scene->geometry);
