@@ -434,7 +434,8 @@ static uint64_t object_count(const RtValue *values) {
     const Recipe *recipe = &recipes[values[KIND].choice];
     const uint64_t n = recipe->count;
     if (recipe->make == MESH) return 8 * n * n;
-    if (recipe->make == INSTANCED) return n + INSTANCES;
+    if (recipe->make == INSTANCED) /* and in parts: the cube, shapes and instances */
+        return n + INSTANCES + 12 + (PARTS - 2) * IN_PART + (PARTS - 3) * 2;
     return recipe->make == AXIS_ALIGNED ? n + (n + 1) / 2 : n; /* every other one is two triangles */
 }
 
