@@ -269,7 +269,12 @@ static void add_object(Family *f, uint32_t i) {
 
 /* ---- instances ---- */
 
-enum { PARTS = 6, IN_PART = 4, INSTANCES = 16 };
+enum {
+    PARTS = 6,
+    IN_PART = 4,
+    INSTANCES = 16,
+    OBJECTS_OF_PARTS = 12 + (PARTS - 2) * IN_PART + (PARTS - 3) * 2 /* the cube, shapes, instances */
+};
 
 /* By turns on the lattice, with quarter turns, where faces are shared and instances coincide; turned and
  * scaled unevenly; sheared; and small. Far ones are also scaled by up to 2^8, and moved by up to 2^10 times
@@ -434,8 +439,7 @@ static uint64_t object_count(const RtValue *values) {
     const Recipe *recipe = &recipes[values[KIND].choice];
     const uint64_t n = recipe->count;
     if (recipe->make == MESH) return 8 * n * n;
-    if (recipe->make == INSTANCED) /* and in parts: the cube, shapes and instances */
-        return n + INSTANCES + 12 + (PARTS - 2) * IN_PART + (PARTS - 3) * 2;
+    if (recipe->make == INSTANCED) return n + OBJECTS_OF_PARTS + INSTANCES;
     return recipe->make == AXIS_ALIGNED ? n + (n + 1) / 2 : n; /* every other one is two triangles */
 }
 
