@@ -23,7 +23,7 @@ static void destroy_layer(RtAccel *accel) {
 RtStatus rt_accel_build_layer(const RtAccelOps *ops, const RtBuild *what, RtAccel *below, RtAccel **out,
                               RtError *error) {
     assert(ops->bytes >= sizeof(RtAccel));
-    if ((ops->flat || ops->remote) && what->scene->geometry.instance_count > 0)
+    if (ops->flat && what->scene->geometry.instance_count > 0)
         return rt_fail(error, RT_BAD_INPUT,
                        "%s serves no scene with instances: `raytally convert --flatten` writes one of copies",
                        ops->name);

@@ -14,14 +14,9 @@ RT_KERNEL bool enter(const RtGeometry *geometry, uint32_t id, const RtPreparedRa
     RtHit hit = RT_MISS;
     if (!rt_enter_begin(geometry, id, ray, best, &entry, tally)) return false;
     entry.inside.kind = 0; /* one tally for all kinds */
-    const uint64_t rays = tally ? tally->rays : 0, hits = tally ? tally->hits : 0;
     rt_trace_stream(query->accel, query->scratch, &entry.inside, 1, any ? NULL : &hit,
                     any ? &hit.object : NULL, tally);
-    if (tally) {
-        tally->rays = rays; /* it is the same ray */
-        tally->hits = hits;
-    }
-    return rt_enter_end(instance, &entry, hit, any, best);
+    return rt_enter_end(instance, &entry, hit, any, best, tally);
 }
 
 bool rt_enter_timed(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any,

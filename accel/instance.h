@@ -15,10 +15,6 @@ typedef struct RtEntry {
     float near, far; /* where it is in the instance's own thick box */
 } RtEntry;
 
-static inline const RtInstance *rt_instance_of(const RtGeometry *geometry, uint32_t id) {
-    return &geometry->instances[rt_ref_index(geometry->objects[id])];
-}
-
 /* False if the ray misses the instance, or can find nothing better there. */
 RT_KERNEL bool rt_enter_begin(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray,
                               const RtHit *best, RtEntry *entry, RtTally *tally) {
@@ -32,10 +28,12 @@ RT_KERNEL bool rt_enter_begin(const RtGeometry *geometry, uint32_t id, const RtP
     return true;
 }
 
-/* Takes the answer of the part: its nearest hit, or if `any` an occluder, with any t. Returns as rt_take_hit.
- */
+/* Takes the answer of the part, which has counted the ray, too: its nearest hit, or if `any` an occluder,
+ * with any t. Returns as rt_take_hit. */
 RT_KERNEL bool rt_enter_end(const RtInstance *instance, const RtEntry *entry, RtHit hit, bool any,
-                            RtHit *best) {
+                            RtHit *best, RtTally *tally) {
+    RT_COUNT(tally, rays, -1);
+    RT_COUNT(tally, hits, -(uint64_t)(hit.object != RT_NO_OBJECT));
     if (hit.object == RT_NO_OBJECT) return false;
     if (any || hit.t < entry->near) hit.t = entry->near;
     if (hit.t > entry->far) hit.t = entry->far;

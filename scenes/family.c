@@ -324,10 +324,10 @@ static void add_materials(RtSceneBuilder *b) {
 
 /* A cube, whose copies on the lattice share faces; shapes; trees; and parts of shapes and earlier parts. */
 static void add_part(Family *f, uint32_t k) {
-    RtScene *whole = f->b->scene, part = {0};
+    const RtScene *whole = f->b->scene;
     const RtTransform moved = f->b->transform;
     const uint32_t own = k == 0 || k == PARTS - 1 ? 0 : IN_PART;
-    f->b->scene = &part;
+    rt_build_begin_part(f->b);
     f->b->transform = rt_transform_identity();
     add_materials(f->b);
     if (k == 0)
@@ -340,10 +340,9 @@ static void add_part(Family *f, uint32_t k) {
         else
             add_mixed(f, at, i);
     }
-    for (uint32_t i = 0; k > 2 && i < 2; i++) add_instance(f, &part, whole, i);
-    f->b->scene = whole;
+    for (uint32_t i = 0; k > 2 && i < 2; i++) add_instance(f, f->b->scene, whole, i);
     f->b->transform = moved;
-    rt_build_check(f->b, rt_scene_add_part(whole, &part, f->b->error));
+    rt_build_end_part(f->b);
 }
 
 /* ---- lights and cameras ---- */

@@ -362,9 +362,8 @@ RT_KERNEL void test_slot(const Query *q, Waiting *w, uint32_t slot, bool any, bo
         const uint32_t k = rays[i];
         const RtHit hit = any ? (RtHit){0, occluders[i]} : hits[i];
         RtTally *tally = counted ? w->ray[k]->tally : NULL;
-        RT_COUNT(tally, rays, -1); /* the part has counted it, too */
-        RT_COUNT(tally, hits, -(uint64_t)(hit.object != RT_NO_OBJECT));
-        w->over[k] = rt_enter_end(rt_instance_of(g, w->object[k]), &w->entry[k], hit, any, &w->ray[k]->best);
+        w->over[k] =
+            rt_enter_end(rt_instance_of(g, w->object[k]), &w->entry[k], hit, any, &w->ray[k]->best, tally);
     }
 }
 

@@ -63,7 +63,7 @@ static const RtBox *some_box(Generator *m) {
     if (below(m, 4) == 0) return &g->box;
     const uint32_t id = below(m, g->object_count);
     if (!rt_is_instance(g, id) || below(m, 2)) return &g->boxes[id];
-    const RtInstance *instance = &g->instances[rt_ref_index(g->objects[id])];
+    const RtInstance *instance = rt_instance_of(g, id);
     m->geometry = instance->geometry;
     m->moved = rt_moved_box(some_box(m), &instance->to_world);
     m->geometry = g;

@@ -125,10 +125,14 @@ RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtVec3d *off
     return load(path, open_named, offset ? *offset : none, true, scene, error);
 }
 
+static bool keeps_instances(size_t format) {
+    return format < FORMAT_COUNT && formats[format].save == rt_yaml_save;
+}
+
 bool rt_scene_keeps_instances(const char *path) {
     size_t format;
     return rt_find_format(path, written_extension, "written", &format, NULL) == RT_OK &&
-           format < FORMAT_COUNT && formats[format].save == rt_yaml_save;
+           keeps_instances(format);
 }
 
 /* The format has no instances: they are written as copies. */
@@ -143,8 +147,7 @@ static RtStatus save_flat(const RtScene *scene, const char *path, RtError *error
 RtStatus rt_scene_save(const RtScene *scene, const char *path, RtError *error) {
     size_t format;
     RT_TRY(rt_find_format(path, written_extension, "written", &format, error));
-    if (scene->geometry.instance_count > 0 && !rt_scene_keeps_instances(path))
-        return save_flat(scene, path, error);
+    if (scene->geometry.instance_count > 0 && !keeps_instances(format)) return save_flat(scene, path, error);
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));
     RtStatus status = format < FORMAT_COUNT ? formats[format].save(scene, output.file, error)

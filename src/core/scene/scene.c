@@ -145,7 +145,7 @@ void rt_scene_place(const RtScene *scene, uint32_t id, const RtRay *ray, RtPlace
         const RtGeometry *g = &place->scene->geometry;
         const uint32_t object = rt_geometry_holder(g, place->object);
         if (!rt_is_instance(g, object)) return;
-        const RtInstance *instance = &g->instances[rt_ref_index(g->objects[object])];
+        const RtInstance *instance = rt_instance_of(g, object);
         const uint32_t material = place->scene->material_of[object];
         if (!place->material && material != RT_OWN_MATERIALS) place->material = &scene->materials[material];
         const RtRay outside = place->ray;

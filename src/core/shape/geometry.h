@@ -123,6 +123,10 @@ static inline bool rt_is_instance(const RtGeometry *geometry, uint32_t object) {
     return rt_ref_shape(geometry->objects[object]) == RT_SHAPE_INSTANCE;
 }
 
+static inline const RtInstance *rt_instance_of(const RtGeometry *geometry, uint32_t object) {
+    return &geometry->instances[rt_ref_index(geometry->objects[object])];
+}
+
 /* Computes the boxes. Call it once, after the last object. */
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error);
 
