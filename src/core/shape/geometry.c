@@ -194,6 +194,13 @@ uint32_t rt_geometry_holder(const RtGeometry *geometry, uint32_t id) {
     return plain + low;
 }
 
+RtShape rt_geometry_shape(const RtGeometry *geometry, uint32_t id) {
+    const uint32_t object = rt_geometry_holder(geometry, id);
+    if (!rt_is_instance(geometry, object)) return rt_ref_shape(geometry->objects[object]);
+    const RtInstance *instance = rt_instance_of(geometry, object);
+    return rt_geometry_shape(instance->geometry, id - instance->first);
+}
+
 /* Of a ray with the largest CSG tree of a geometry and its parts. */
 static uint32_t most_crossings(const RtGeometry *geometry) {
     uint32_t most = geometry->part_crossings;

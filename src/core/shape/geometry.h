@@ -119,6 +119,9 @@ uint32_t rt_geometry_id_count(const RtGeometry *geometry);
 /* The object 0..object_count-1 that is, or contains, the one with this id. */
 uint32_t rt_geometry_holder(const RtGeometry *geometry, uint32_t id);
 
+/* The shape of the object with this id, also inside instances. */
+RtShape rt_geometry_shape(const RtGeometry *geometry, uint32_t id);
+
 static inline bool rt_is_instance(const RtGeometry *geometry, uint32_t object) {
     return rt_ref_shape(geometry->objects[object]) == RT_SHAPE_INSTANCE;
 }
