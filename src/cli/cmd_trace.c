@@ -135,7 +135,7 @@ static int word_width(const RtPath *path) {
 static void print_row(const RtPath *path, uint32_t index) {
     const RtPathRow *row = &path->rows[index];
     const RtPathPlace *place = &path->places[row->place];
-    const int width = word_width(path), indent = 2 * (int)place->level;
+    const int width = word_width(path), indent = 2 * (int)row->level;
     char of[RT_MAX_NAME + 32] = "";
     if (row->kind == RT_TRACED_OBJECT_TEST && strcmp(row->what, "object") == 0)
         snprintf(of, sizeof of, "%s %u, %s", row->what, rt_path_row_index(path, row),
@@ -177,7 +177,7 @@ static void print_rows(const RtPath *path, const Options *o) {
         } else if (run == 1) {
             print_row(path, i);
         } else {
-            const int indent = 2 * (int)path->places[row->place].level;
+            const int indent = 2 * (int)row->level;
             printf("%5u  %*s%-*s  %u objects, to row %-41u  %-18s", i + 1, indent, "", width - indent,
                    "object tests", run, i + run, "all missed");
             print_t((double)row->nearest);
@@ -336,7 +336,7 @@ static json_t *row_json(const RtPath *path, const RtPathRow *row) {
     json_t *json = json_pack(
         "{s:s, s:s?, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "event", rt_path_row_name(row), "of",
         *row->what ? row->what : NULL, "index", (json_int_t)rt_path_row_index(path, row), "level",
-        (json_int_t)path->places[row->place].level, "met",
+        (json_int_t)row->level, "met",
         row->kind == RT_TRACED_EXTENT_TEST && !rt_path_row_answers(row) ? json_null()
                                                                         : json_boolean(row->met),
         "enter", rt_json_number(is_in ? row->enter : (double)NAN), "leave",

@@ -371,7 +371,7 @@ static void draw_row(const Drawing *d, uint32_t i, double y) {
                          : !rt_path_row_answers(row)        ? ""
                          : row->met                         ? ": hit"
                                                             : ": missed";
-    const int indent = 3 * (int)d->path->places[row->place].level;
+    const int indent = 3 * (int)row->level;
     rt_draw_text(d->cairo, MARGIN, y + ROW - 3, RT_BLACK, "%u  %*s%s%s%s", i + 1, indent, "",
                  rt_path_row_name(row), of, result);
     draw_bars(d, i, y);

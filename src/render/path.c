@@ -121,6 +121,7 @@ static void record(void *context, const RtTraced *event) {
     }
     *row = (RtPathRow){.kind = event->kind,
                        .place = recorder->place,
+                       .level = path->places[recorder->place].level,
                        .index = event->index,
                        .leaf = event->leaf,
                        .empty = event->empty,

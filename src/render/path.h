@@ -23,6 +23,7 @@ typedef struct RtPathRow {
     RtTracedKind kind;      /* never RT_TRACED_OBJECT_HIT, RT_TRACED_LEFT */
     uint32_t place;         /* index in path->places, of whose scene `index` and `box` are; "entered" is the
                              * first row there, and its index the part */
+    uint32_t level;         /* of the place */
     char what[RT_MAX_NAME]; /* as in RtTraced; "object" or "instance" for object tests; "": nothing */
     uint32_t index;         /* as in RtTraced */
     bool leaf, empty;       /* of a step */
