@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* glTF 2.0, as JSON (.gltf) or binary (.glb): the triangles of all nodes of the scene, nodes depth first,
  * each with its matrices, at rest: morph targets with the weights of the file, skins in the pose of their
- * joints. Instances (EXT_mesh_gpu_instancing) become copies. Materials are ignored, animations with a
- * warning. Files that need another extension for their geometry are rejected.
+ * joints. A mesh of PART_TRIANGLES or more that is placed several times, by nodes or by
+ * EXT_mesh_gpu_instancing, becomes a part and instances of it, where it needs no skin and no mirror, and the
+ * file is the whole scene; else copies. Materials are ignored, animations with a warning. Files that need
+ * another extension for their geometry are rejected.
  *
  * First all nodes are placed, because a skin needs the places of its joints; then come their meshes. Every
  * member is checked where it is read. A buffer is read when it is first used, and what is read of it is
@@ -36,6 +38,17 @@ typedef struct Place {
     RtTransform transform;
 } Place;
 
+/* A mesh that may be placed several times. */
+typedef struct Shared {
+    uint64_t places; /* nodes that do */
+    uint32_t part;   /* of the scene, plus 1; 0: not tried; NO_PART: too small */
+} Shared;
+
+typedef struct Instance {
+    uint32_t part;
+    RtTransform to_world;
+} Instance;
+
 typedef struct Gltf {
     RtMeshReader *mesh;
     json_t *root;
@@ -46,6 +59,9 @@ typedef struct Gltf {
     uint32_t *last_of; /* one for each of the document's nodes: 1 + its last place; 0: not in the scene */
     Place *places;     /* [place_count] */
     uint32_t place_count, place_capacity;
+    Shared *shared;      /* one for each of the document's meshes */
+    Instance *instances; /* [instance_count], to be added after all triangles */
+    uint32_t instance_count, instance_capacity;
     RtArena memory;
 } Gltf;
 
@@ -68,6 +84,10 @@ typedef struct Pose {
 
 /* MOST_PLACED: for each byte of the file; a forest of 10,000 trees of 10,000 triangles has 400. */
 enum { DEEPEST = 256, MOST_PLACED = 1000 };
+
+/* Below it a ray would take longer to enter an instance than to test copies. */
+enum { PART_TRIANGLES = 100 };
+#define NO_PART UINT32_MAX
 
 #define MOST_INTEGER 0x1p40 /* sums fit 64 bits */
 
@@ -519,6 +539,7 @@ static RtStatus place_node(Gltf *g, const Item *node, const RtTransform *above, 
     RT_TRY(get_transform(g, node, &own));
     place.transform = rt_transform_compose(&own, above);
     if (mesh) RT_TRY(find_item(g, node, mesh, "meshes", &place.mesh));
+    if (mesh) g->shared[place.mesh.index].places++;
     if (g->last_of[node->index])
         RT_TRY(rt_mesh_warn(g->mesh, "nodes[%zu] has several parents: it is placed below each", node->index));
     RT_TRY(rt_append(&g->places, &g->place_count, &g->place_capacity, &place, sizeof place,
@@ -588,6 +609,59 @@ static RtStatus read_skin(Gltf *g, const Item *node, RtArena *memory, Pose *pose
     return RT_OK;
 }
 
+static RtStatus add_primitives(Gltf *g, const Item *mesh, const Pose *pose) {
+    json_t *primitive;
+    size_t k;
+    json_array_foreach(json_object_get(mesh->object, "primitives"), k, primitive)
+        RT_TRY(add_primitive(g, mesh, primitive, pose));
+    return RT_OK;
+}
+
+/* Makes a part of the mesh, as if it were a scene of its own, and adds that to the scene. */
+static RtStatus make_part(Gltf *g, const Item *mesh, const Pose *pose, Shared *shared) {
+    RT_OWNED(RtScene, part, rt_scene_clear);
+    RtMeshReader *r = g->mesh;
+    RtScene *scene = r->scene;
+    const uint32_t material = r->material;
+    Pose unmoved = *pose;
+    unmoved.transform = rt_transform_identity();
+    rt_scene_init(&part);
+    RT_TRY(rt_scene_share_material(&part, &scene->materials[material], &r->material, r->text.error));
+    part.warnings = scene->warnings;
+    r->scene = &part;
+    const RtStatus status = add_primitives(g, mesh, &unmoved);
+    r->scene = scene;
+    r->material = material;
+    scene->warnings = part.warnings;
+    part.warnings = (RtWarnings){0};
+    shared->part = NO_PART;
+    if (status != RT_OK || part.geometry.triangle_count < PART_TRIANGLES) return status;
+    shared->part = scene->part_count + 1;
+    return rt_scene_add_part(scene, &part, r->text.error);
+}
+
+/* *done: the mesh in this pose is an instance, and has no triangles of its own. */
+static RtStatus place_instance(Gltf *g, const Item *mesh, const Pose *pose, bool *done) {
+    Shared *shared = &g->shared[mesh->index];
+    RtTransform inverse;
+    *done = false;
+    if (rt_transform_invert(&pose->transform, &inverse, NULL) != RT_OK) return RT_OK;
+    if (shared->part == 0) RT_TRY(make_part(g, mesh, pose, shared));
+    if (shared->part == NO_PART) return RT_OK;
+    const Instance instance = {shared->part - 1, pose->transform};
+    *done = true;
+    return rt_append(&g->instances, &g->instance_count, &g->instance_capacity, &instance, sizeof instance,
+                     g->mesh->text.error);
+}
+
+static RtStatus add_instances(const Gltf *g) {
+    RtScene *scene = g->mesh->scene;
+    for (uint32_t i = 0; i < g->instance_count; i++)
+        RT_TRY(rt_scene_add_instance(scene, scene, g->instances[i].part, &g->instances[i].to_world,
+                                     RT_OWN_MATERIALS, g->mesh->text.error));
+    return RT_OK;
+}
+
 /* Adds the mesh of a node, if it has one: skinned, in each of its instances, or once. */
 static RtStatus add_mesh_at(Gltf *g, const Place *place) {
     static const double t[3] = {0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
@@ -597,25 +671,29 @@ static RtStatus add_mesh_at(Gltf *g, const Place *place) {
                  *extensions = json_object_get(node->object, "extensions"),
                  *instancing = json_object_get(extensions, "EXT_mesh_gpu_instancing");
     const Item attributes = inside(node, json_object_get(instancing, "attributes"));
-    json_t *primitives = json_object_get(mesh->object, "primitives"), *primitive;
-    size_t k;
     Pose pose = {.weights = weights ? weights : json_object_get(mesh->object, "weights")};
     Values moves, turns, scales;
     if (!mesh->object) return RT_OK;
-    if (!json_is_array(primitives)) return fail_item(g, mesh, "expected primitives, a list");
+    if (!json_is_array(json_object_get(mesh->object, "primitives")))
+        return fail_item(g, mesh, "expected primitives, a list");
     RT_TRY(read_skin(g, node, &memory, &pose));
     RT_TRY(read_accessor(g, &attributes, "TRANSLATION", 3, 0, &memory, &moves));
     RT_TRY(read_accessor(g, &attributes, "ROTATION", 4, moves.count, &memory, &turns));
     RT_TRY(read_accessor(g, &attributes, "SCALE", 3, moves.at ? moves.count : turns.count, &memory, &scales));
     const uint32_t count = moves.at ? moves.count : turns.at ? turns.count : scales.count;
-    if (count > 0) RT_TRY(rt_mesh_warn(g->mesh, "instances (EXT_mesh_gpu_instancing) become copies"));
+    const bool repeats =
+        g->mesh->whole && !pose.joints && !weights && (count > 1 || g->shared[mesh->index].places > 1);
     if (count > 0 && pose.joints) return fail_item(g, node, "expected a skin or instances, found both");
     for (size_t i = 0; i < (count > 0 ? count : 1); i++) {
         const RtTransform instance =
             compose_steps(moves.at ? moves.at + 3 * i : t, turns.at ? turns.at + 4 * i : q,
                           scales.at ? scales.at + 3 * i : s);
         pose.transform = rt_transform_compose(&instance, &place->transform);
-        json_array_foreach(primitives, k, primitive) RT_TRY(add_primitive(g, mesh, primitive, &pose));
+        bool placed = false;
+        if (repeats) RT_TRY(place_instance(g, mesh, &pose, &placed));
+        if (!placed && count > 0)
+            RT_TRY(rt_mesh_warn(g->mesh, "instances (EXT_mesh_gpu_instancing) become copies"));
+        if (!placed) RT_TRY(add_primitives(g, mesh, &pose));
     }
     return RT_OK;
 }
@@ -640,6 +718,8 @@ static RtStatus read_document(Gltf *g, const char *text, size_t size) {
         return rt_mesh_fail(g->mesh, "expected glTF 2.0, with {\"asset\": {\"version\": \"2.0\"}}");
     g->buffers =
         rt_arena_alloc(&g->memory, json_array_size(json_object_get(g->root, "buffers")), sizeof *g->buffers);
+    g->shared =
+        rt_arena_alloc(&g->memory, json_array_size(json_object_get(g->root, "meshes")), sizeof *g->shared);
     RT_TRY(rt_arena_check(&g->memory, "buffers of glTF", file->error));
     RT_TRY(check_extensions(g, "extensionsRequired", true));
     RT_TRY(check_extensions(g, "extensionsUsed", false));
@@ -647,7 +727,7 @@ static RtStatus read_document(Gltf *g, const char *text, size_t size) {
         RT_TRY(rt_mesh_warn(g->mesh, "its animations are left out: everything is at rest"));
     RT_TRY(place_nodes(g));
     for (uint32_t i = 0; i < g->place_count; i++) RT_TRY(add_mesh_at(g, &g->places[i]));
-    return RT_OK;
+    return add_instances(g);
 }
 
 static RtStatus read_all(RtMeshReader *r, const char *text, size_t size, Buffer chunk) {
@@ -658,6 +738,7 @@ static RtStatus read_all(RtMeshReader *r, const char *text, size_t size, Buffer 
     }
     rt_arena_clear(&g.memory);
     rt_free(g.places);
+    rt_free(g.instances);
     json_decref(g.root);
     return status;
 }
