@@ -50,7 +50,7 @@ typedef struct RtItemBuffer {
     RtAccel base;
     const RtItemRaster *raster;
     RtView view;
-    uint32_t *samples; /* [rows * columns]: object ids */
+    uint32_t *samples; /* [rows * columns]: objects of the scene, instances among them */
     /* The dir of a sample's ray is columns[column] + rows[row], rounded to float32; the fourth component is
      * its tmax. Up to whole tiles, beyond the image. */
     RtItemTerm *columns, *rows;
@@ -106,7 +106,7 @@ typedef struct RtItemTile {
     const RtItemBuffer *buffer;
     uint32_t column, row;    /* of its upper left sample */
     uint32_t columns, rows;  /* of it that are in the image */
-    RtHitMemory *hit_memory; /* of hit functions */
+    RtQuery query;           /* of the layer below, for hit functions in parts */
     RtTally tally;           /* of the hit functions asked */
 } RtItemTile;
 

@@ -314,7 +314,7 @@ static void draw_block(RtItemTile *tile, uint32_t block, const RtItemFootprint *
             continue;
         ray.dir = rt_vec3(tile->dir[i][0], tile->dir[i][1], tile->dir[i][2]);
         RtPreparedRay prepared;
-        rt_hit_ray(&prepared, g, &ray, tile->hit_memory);
+        rt_hit_ray(&prepared, g, &ray, rt_query_hit_memory(&tile->query));
         rt_test_object(g, id, &prepared, false, &nearest, &tile->tally);
         tile->t[i] = nearest.t;
         tile->id[i] = nearest.object;
@@ -341,11 +341,14 @@ void rt_item_draw_object(RtItemTile *tile, uint32_t id) {
 
 /* Writes the tile into the image. */
 static void end_tile(const RtItemTile *tile) {
+    const RtGeometry *g = rt_item_geometry(tile->buffer);
     const size_t columns = tile->buffer->view.sampling.columns;
     uint32_t *corner = tile->buffer->samples + tile->row * columns + tile->column;
     for (uint32_t row = 0; row < tile->rows; row++) {
-        for (uint32_t column = 0; column < tile->columns; column++)
-            corner[row * columns + column] = tile->id[sample_at(column, row)];
+        for (uint32_t column = 0; column < tile->columns; column++) {
+            const uint32_t id = tile->id[sample_at(column, row)];
+            corner[row * columns + column] = id == RT_NO_OBJECT ? id : rt_geometry_holder(g, id);
+        }
     }
 }
 
@@ -400,7 +403,6 @@ static void choose_classes(RtItemBuffer *buffer) {
 
 RtStatus rt_item_draw_all(RtItemBuffer *buffer, int threads, RtError *error) {
     RT_ARENA(memory);
-    const RtGeometry *g = rt_item_geometry(buffer);
     const size_t thread_count = (size_t)rt_thread_count(threads);
     const uint32_t across = rt_item_tiles(buffer->view.sampling.columns);
     const size_t tiles = (size_t)across * rt_item_tiles(buffer->view.sampling.rows);
@@ -413,12 +415,12 @@ RtStatus rt_item_draw_all(RtItemBuffer *buffer, int threads, RtError *error) {
     RtStatus status = RT_OK;
     for (size_t k = 0; k < thread_count && status == RT_OK; k++) {
         drawing.drawn[k].buffer = buffer;
-        status = rt_hit_memory_alloc(g, &drawing.drawn[k].hit_memory, error);
+        status = rt_query_init(&drawing.drawn[k].query, buffer->base.below, error);
     }
     if (status == RT_OK) status = rt_parallel_for(tiles, threads, draw_tile, &drawing, error);
     for (size_t k = 0; k < thread_count; k++) {
         rt_tally_add(&buffer->base.build_tally, &drawing.drawn[k].tally);
-        rt_free(drawing.drawn[k].hit_memory);
+        rt_query_clear(&drawing.drawn[k].query);
     }
     return status;
 }
