@@ -103,7 +103,6 @@ static RtStatus check_sample(const RtItemBuffer *buffer, size_t i, const RtQuery
     char names[48] = "no object";
     rt_hit_ray(&prepared, g, &ray, rt_query_hit_memory(query));
     for (uint32_t id = 0; id < g->object_count; id++) rt_test_object(g, id, &prepared, false, &first, NULL);
-    if (first.object != RT_NO_OBJECT) first.object = rt_geometry_holder(g, first.object);
     if (first.object == named) return RT_OK;
     if (named != RT_NO_OBJECT) snprintf(names, sizeof names, "object %u", named);
     if (first.object == RT_NO_OBJECT)

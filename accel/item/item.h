@@ -50,7 +50,7 @@ typedef struct RtItemBuffer {
     RtAccel base;
     const RtItemRaster *raster;
     RtView view;
-    uint32_t *samples; /* [rows * columns]: objects of the scene, instances among them */
+    uint32_t *samples; /* [rows * columns]: object ids, also of those in instances */
     /* The dir of a sample's ray is columns[column] + rows[row], rounded to float32; the fourth component is
      * its tmax. Up to whole tiles, beyond the image. */
     RtItemTerm *columns, *rows;

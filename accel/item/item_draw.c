@@ -341,14 +341,11 @@ void rt_item_draw_object(RtItemTile *tile, uint32_t id) {
 
 /* Writes the tile into the image. */
 static void end_tile(const RtItemTile *tile) {
-    const RtGeometry *g = rt_item_geometry(tile->buffer);
     const size_t columns = tile->buffer->view.sampling.columns;
     uint32_t *corner = tile->buffer->samples + tile->row * columns + tile->column;
     for (uint32_t row = 0; row < tile->rows; row++) {
-        for (uint32_t column = 0; column < tile->columns; column++) {
-            const uint32_t id = tile->id[sample_at(column, row)];
-            corner[row * columns + column] = id == RT_NO_OBJECT ? id : rt_geometry_holder(g, id);
-        }
+        for (uint32_t column = 0; column < tile->columns; column++)
+            corner[row * columns + column] = tile->id[sample_at(column, row)];
     }
 }
 
