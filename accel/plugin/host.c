@@ -5,7 +5,12 @@
  * own: the answers and the plugin's memory, both between guard pages; known bytes (canaries) fill the rest of
  * their pages. Every answer is checked before anything else reads it: the object exists, and t is on the ray.
  * Object tests are counted here, whatever the plugin does with its counters, unless it has hit functions of
- * its own. */
+ * its own.
+ *
+ * To a plugin an instance is one more object, which raytally tests, and so answers from below name instances
+ * as well. That keeps the order of hits, since the objects of an instance have consecutive ids. The answer
+ * that leaves names the object in the instance: the one that its ray was told of last or, if that was
+ * another, the one that a further test finds. */
 #include "accel/kernel.h"
 #include "accel/plugin/channel.h"
 #include "core/base/parallel.h"
@@ -52,6 +57,8 @@ typedef struct ShownEvents {
     RtHit best;                        /* so far */
 } ShownEvents;
 
+enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
+
 /* The plugin sees only the first member of the first. */
 typedef struct PluginQuery {
     RtPluginNow now;
@@ -61,6 +68,8 @@ typedef struct PluginQuery {
     char *memory_end; /* of its pages */
     char *answers_end;
     const RtScratch *scratch; /* of this layer and those below */
+    size_t rays;              /* of the stream */
+    RtHit told[MOST_ANSWERS]; /* of each ray: the last hit in an instance */
     bool counting;
     /* In a stream that is counted: of object tests, and of the layers below. */
     RtTally tallies[RT_RAY_KIND_COUNT], below[RT_RAY_KIND_COUNT];
@@ -156,8 +165,35 @@ static void report_counted(ShownEvents *events) {
 
 /* ---- what the plugin calls ---- */
 
+/* Keeps the hit of a ray, if that is one of the stream. */
+static void tell(PluginQuery *query, const RtRay *ray, RtHit hit) {
+    const size_t i = ((uintptr_t)ray - (uintptr_t)query->now.stream) / sizeof *ray;
+    if (i < query->rays && &query->now.stream[i] == ray) query->told[i] = hit;
+}
+
+/* rt_test_object, which names an instance rather than an object in it. */
+RT_KERNEL bool test_object(PluginQuery *query, const RtPreparedRay *ray, uint32_t id, bool any, RtHit *best,
+                           RtTally *tally) {
+    if (!rt_is_instance(query->geometry, id))
+        return rt_test_object(query->geometry, id, ray, any, best, tally);
+    RtHit hit = {best->t, RT_NO_OBJECT};
+    rt_test_object(query->geometry, id, ray, any, &hit, tally);
+    now = &query->now;
+    if (hit.object == RT_NO_OBJECT) return false;
+    if (rt_hit_before(hit.t, id, *best)) {
+        tell(query, (const RtRay *)ray->ray, hit);
+        *best = (RtHit){hit.t, id};
+    }
+    return any;
+}
+
 static int other_hit(const raytally_prepared *ray, uint32_t id, float *t) {
-    return rt_rarer_hit(((PluginQuery *)ray->query)->geometry, id, ray, t, NULL);
+    RtHit hit = RT_MISS;
+    const PluginQuery *query = (PluginQuery *)ray->query;
+    if (!rt_is_instance(query->geometry, id)) return rt_rarer_hit(query->geometry, id, ray, t, NULL);
+    test_object((PluginQuery *)ray->query, ray, id, false, &hit, NULL);
+    *t = hit.t;
+    return hit.object != RT_NO_OBJECT;
 }
 
 RT_KERNEL int hits_of(const raytally_prepared *ray, const uint32_t *ids, uint32_t count, bool any,
@@ -172,7 +208,7 @@ RT_KERNEL int hits_of(const raytally_prepared *ray, const uint32_t *ids, uint32_
                          ids[i]);
             break;
         }
-        over = rt_test_object(geometry, ids[i], ray, any, &hit, tally);
+        over = test_object(query, ray, ids[i], any, &hit, tally);
     }
     *best = (raytally_hit){hit.t, hit.object};
     return over;
@@ -191,6 +227,8 @@ static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32
     counters->at[RAYTALLY_OBJECT_TESTS] += tally.object_tests;
     counters->at[RAYTALLY_OBJECT_HITS] += tally.object_hits;
     counters->at[RAYTALLY_CSG_TESTS] += tally.csg_tests;
+    tally.object_tests = tally.object_hits = tally.csg_tests = 0;
+    rt_tally_add(&query->below[ray->ray->kind], &tally); /* of parts */
     return over;
 }
 
@@ -221,6 +259,12 @@ static void trace_below(PluginQuery *query, const RtRay *rays, size_t count, RtH
         for (size_t i = 0; i < count; i++) rt_put_answer(&RT_MISS, i, !hits, hits, occluders, NULL);
     }
     now = &query->now;
+    for (size_t i = 0; query->geometry->instance_count > 0 && i < count; i++) {
+        uint32_t *object = hits ? &hits[i].object : &occluders[i];
+        if (*object == RT_NO_OBJECT || *object == RT_UNNAMED_OBJECT) continue;
+        tell(query, &rays[i], (RtHit){hits ? hits[i].t : 0, *object});
+        *object = rt_geometry_holder(query->geometry, *object);
+    }
 }
 
 static void nearest_below(raytally_query *face, const raytally_ray *rays, size_t count, raytally_hit *hits) {
@@ -262,8 +306,6 @@ static void show(const raytally_prepared *ray, uint32_t counter, uint32_t number
 static const raytally_host host = HOST(NULL), observed_host = HOST(show);
 
 /* ---- memory between guard pages ---- */
-
-enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
 
 static size_t round_up(size_t bytes, size_t unit) {
     return (bytes + unit - 1) / unit * unit;
@@ -342,7 +384,10 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
     query->now.face.host = query->counting && rt_trace_observer ? &observed_host : &host;
     query->now.face.crossings = scratch->hit_memory;
     query->scratch = scratch;
-    query->now.face.object_count = query->counting ? 0 : query->geometry->object_count;
+    query->now.face.object_count =
+        query->counting ? 0 : query->geometry->object_count - query->geometry->instance_count;
+    query->rays = count;
+    for (size_t i = 0; query->geometry->instance_count > 0 && i < count; i++) query->told[i] = RT_MISS;
     query->now.face.ray = NULL;
     query->now.stream = rays;
     now = &query->now;
@@ -370,13 +415,31 @@ static void break_at_object(Plugin *accel, const RtRay *ray, uint32_t object) {
                  object);
 }
 
+/* The hit of an answer, or if `any` an occluder, by the object that an instance contains. */
+static RtHit name_hit(PluginQuery *query, const RtRay *ray, RtHit answer, RtHit told, bool any) {
+    const RtGeometry *g = query->geometry;
+    RtHit hit = any ? RT_MISS : (RtHit){answer.t, RT_NO_OBJECT};
+    RtPreparedRay prepared;
+    if (answer.object - (g->object_count - g->instance_count) >= g->instance_count) return answer; /* none */
+    if (told.object != RT_NO_OBJECT && (any || told.t == answer.t) &&
+        rt_geometry_holder(g, told.object) == answer.object)
+        return told;
+    rt_hit_ray(&prepared, g, ray, query->now.face.crossings);
+    rt_test_object(g, answer.object, &prepared, any, &hit, NULL);
+    if (hit.object == RT_NO_OBJECT) hit.object = rt_instance_of(g, answer.object)->first; /* it misses */
+    return (RtHit){answer.t, hit.object};
+}
+
 static void take_hits(PluginQuery *query, const RtRay *rays, size_t count, const RtHit *theirs, RtHit *hits) {
     Plugin *accel = query->accel;
     memcpy(hits, theirs, count * sizeof *hits);
     for (size_t i = 0; i < count; i++) {
         const RtHit hit = hits[i];
-        if (rt_hit_is_possible(&accel->base, &rays[i], hit)) continue;
         hits[i] = RT_MISS;
+        if (rt_hit_is_possible(query->geometry->object_count, &rays[i], hit)) {
+            hits[i] = name_hit(query, &rays[i], hit, query->told[i], false);
+            continue;
+        }
         if (hit.object < accel->base.scene->geometry.object_count || hit.object == RT_NO_OBJECT) {
             char text[RT_RAY_TEXT];
             rt_ray_format(&rays[i], text, sizeof text);
@@ -392,10 +455,10 @@ static void take_hits(PluginQuery *query, const RtRay *rays, size_t count, const
 static void test_occluders(PluginQuery *query, const RtRay *rays, size_t count, const uint32_t *occluders) {
     for (size_t i = 0; i < count; i++) {
         RtPreparedRay ray;
-        float t;
+        RtHit hit = RT_MISS;
         if (occluders[i] == RT_NO_OBJECT) continue;
         rt_hit_ray(&ray, query->geometry, &rays[i], query->now.face.crossings);
-        if (rt_object_hit(query->geometry, occluders[i], &ray, &t, NULL)) continue;
+        if (rt_test_object(query->geometry, occluders[i], &ray, true, &hit, NULL)) continue;
         break_at_ray(query->accel, &rays[i], "it answered with an occluder that the ray does not hit",
                      occluders[i]);
     }
@@ -406,11 +469,13 @@ static void take_occluders(PluginQuery *query, const RtRay *rays, size_t count, 
     Plugin *accel = query->accel;
     for (size_t i = 0; i < count; i++) {
         occluders[i] = theirs[i];
-        if (rt_occluder_is_possible(&accel->base, theirs[i])) continue;
+        if (rt_occluder_is_possible(&accel->base, query->geometry->object_count, theirs[i])) continue;
         break_at_object(accel, &rays[i], theirs[i]);
         occluders[i] = RT_NO_OBJECT;
     }
     if (query->counting && accel->base.exact) test_occluders(query, rays, count, occluders);
+    for (size_t i = 0; i < count; i++)
+        occluders[i] = name_hit(query, &rays[i], (RtHit){0, occluders[i]}, query->told[i], true).object;
 }
 
 _Static_assert((int)RAYTALLY_COUNTERS_KNOWN == (int)RT_TALLY_COUNTER_COUNT &&
@@ -421,9 +486,9 @@ _Static_assert((int)RAYTALLY_COUNTERS_KNOWN == (int)RT_TALLY_COUNTER_COUNT &&
 
 /* Checks the counts of a stream of so many rays, and adds them and those of the layers below, where rays and
  * hits count again. */
-static void add_counters(PluginQuery *query, const raytally_counters *counted, size_t rays,
+static void add_counters(PluginQuery *query, const raytally_counters *counted, size_t rays, uint32_t kinds,
                          RtTally *tallies) {
-    const bool tests_here = !(query->accel->table->flags & RAYTALLY_OWN_HITS) && query->accel->base.counts;
+    const bool is_base = !query->accel->base.below, tests_here = !(query->accel->table->flags & RAYTALLY_OWN_HITS) && query->accel->base.counts;
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         RtTally theirs;
         memcpy(&theirs, counted[kind].at, sizeof theirs);
@@ -444,6 +509,7 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
                          name, of_kind, count, right);
             }
         }
+        if (is_base && !(kinds >> kind & 1)) continue; /* rays in a part have one tally */
         query->below[kind].rays = query->below[kind].hits = 0;
         rt_tally_add(&tallies[kind], &theirs);
         rt_tally_add(&tallies[kind], &query->below[kind]);
@@ -482,7 +548,9 @@ static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *r
             take_hits(query, rays + first, n, theirs, hits + first);
         query->counting = false;
         if (counted) report_counted(&query->events);
-        if (counted) add_counters(query, counters, n, tallies);
+        uint32_t kinds = 0;
+        for (size_t i = 0; counted && i < n; i++) kinds |= 1u << rays[first + i].kind;
+        if (counted) add_counters(query, counters, n, kinds, tallies);
     }
     for (size_t i = 0; counted && i < count; i++)
         rt_count_answer((any ? occluders[i] : hits[i].object) != RT_NO_OBJECT, &tallies[rays[i].kind]);
@@ -662,7 +730,7 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                             .params = ops->params,
                             .param_count = table->param_count,
                             .kinds = table->flags & RAYTALLY_OVERLAY ? RT_ALL_RAY_KINDS : 0,
-                            .flat = true,
+                            .flat = (table->flags & RAYTALLY_OWN_HITS) != 0,
                             .remote = true,
                             .bytes = sizeof(Plugin),
                             .build = build,
