@@ -104,10 +104,10 @@ typedef struct RtItemTile {
     uint32_t id[RT_ITEM_TILE_SAMPLES]; /* its object, or RT_NO_OBJECT */
     float farthest[RT_ITEM_BLOCKS];    /* t of a block */
     const RtItemBuffer *buffer;
-    uint32_t column, row;    /* of its upper left sample */
-    uint32_t columns, rows;  /* of it that are in the image */
-    RtQuery query;           /* of the layer below, for hit functions in parts */
-    RtTally tally;           /* of the hit functions asked */
+    uint32_t column, row;   /* of its upper left sample */
+    uint32_t columns, rows; /* of it that are in the image */
+    RtQuery query;          /* of the layer below, for hit functions in parts */
+    RtTally tally;          /* of the hit functions asked */
 } RtItemTile;
 
 /* Draws an object that is no triangle. */

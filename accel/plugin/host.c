@@ -488,7 +488,8 @@ _Static_assert((int)RAYTALLY_COUNTERS_KNOWN == (int)RT_TALLY_COUNTER_COUNT &&
  * hits count again. */
 static void add_counters(PluginQuery *query, const raytally_counters *counted, size_t rays, uint32_t kinds,
                          RtTally *tallies) {
-    const bool is_base = !query->accel->base.below, tests_here = !(query->accel->table->flags & RAYTALLY_OWN_HITS) && query->accel->base.counts;
+    const bool is_base = !query->accel->base.below,
+               tests_here = !(query->accel->table->flags & RAYTALLY_OWN_HITS) && query->accel->base.counts;
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         RtTally theirs;
         memcpy(&theirs, counted[kind].at, sizeof theirs);
