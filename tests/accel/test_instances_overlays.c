@@ -112,12 +112,14 @@ RT_TEST(of_instances_that_coincide_overlays_name_the_first) {
 RT_TEST(hits_beyond_the_box_of_the_instance_are_drawn_within_it) {
     RtScene scene = begin_view(), part = begin_scene();
     const float far = 131072;
-    for (int i = 0; i < 5; i++) add_ball(&part, far + (float)i, 0.3f, 0, 0.5f);
+    RtVec3 v[4];
+    for (int k = 0; k < 4; k++) v[k] = rt_vec3(far, k == 1 || k == 2 ? 1 : -1, k >= 2 ? 1 : -1);
+    assert_ok(rt_scene_add_polygon(&part, 0, v, 4, error));
     add_part(&scene, &part);
     place(&scene, &scene, 0, moved(-(double)far, 0, 0));
-    place(&scene, &scene, 0, moved(-(double)far - 2, 1, 0));
-    look(&scene, rt_vec3(1, -6, 1), rt_vec3(1, 0, 0));
-    check_lit(&scene, rt_vec3(9, -2, 7));
+    place(&scene, &scene, 0, moved(2 - (double)far, 1, 0.5));
+    look(&scene, rt_vec3(-6.003f, 0.1f, 0.2f), rt_vec3(0, 0, 0));
+    check_lit(&scene, rt_vec3(-6.005f, -2, 7));
 }
 
 /* ---- costs ---- */
@@ -145,17 +147,20 @@ RT_TEST(a_primary_ray_tests_the_object_it_hits_and_the_instances_around_it) {
 }
 
 RT_TEST(a_shadow_ray_tests_the_instances_of_its_cell) {
-    OWNED_SCENE scene = begin_square();
+    OWNED_SCENE scene = begin_view();
+    RtScene part = begin_scene();
+    add_ball(&part, 0, 0, 0, 1), add_ball(&part, 0, 0, -2, 1);
+    add_part(&scene, &part);
     for (int i = 0; i < 3; i++) place(&scene, &scene, 0, moved(30 * i, 0, 0));
     assert_ok(rt_scene_add_light(&scene, rt_vec3(30, 0, 3), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
     OWNED_ACCEL RtAccel *accel = open_valid(&scene, "light:cells=64+brute");
     OWNED_QUERY query = open_query(accel);
     RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
-    const RtRay ray = shadow_ray(&scene, rt_vec3(30.3f, 0.1f, -2), 0);
+    const RtRay ray = shadow_ray(&scene, rt_vec3(30.3f, 0.1f, -3), 0);
     uint32_t occluder;
     rt_trace_stream(accel, query.scratch, &ray, 1, NULL, &occluder, tallies);
-    assert_int_equal(occluder, 2); /* that of the second */
+    assert_int_equal(occluder, 2); /* the second's first ball */
     assert_tally("light", &tallies[RT_RAY_SHADOW],
                  &(RtTally){.rays = 1, .hits = 1, .steps = 1, .object_tests = 2, .object_hits = 1});
 }
