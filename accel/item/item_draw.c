@@ -12,8 +12,8 @@
  * file. The part below tmin is cut off. A direction rounded to float32 is off by 2^-24 of its length, which
  * moves its position in the image by less than `direction_error`, and its component along the axis, which is
  * 1, by less than that. */
+#include "accel/instance.h"
 #include "accel/item/item.h"
-#include "accel/kernel.h"
 #include "core/base/parallel.h"
 
 #include <stdlib.h>
@@ -299,6 +299,27 @@ void rt_item_update_farthest(RtItemTile *tile, uint32_t block) {
         tile->farthest[block] = rt_maxf(t[i], tile->farthest[block]);
 }
 
+/* The rays of a block that enter an instance, whose part answers them as a stream. */
+typedef struct Entering {
+    RtEntry entries[RT_ITEM_BLOCK_SAMPLES];
+    uint32_t samples[RT_ITEM_BLOCK_SAMPLES], count;
+} Entering;
+
+static void enter_part(RtItemTile *tile, const RtInstance *instance, const Entering *entering) {
+    const RtQuery *part = &rt_query_hit_memory(&tile->query)->parts[instance->part];
+    RtRay rays[RT_ITEM_BLOCK_SAMPLES];
+    RtHit hits[RT_ITEM_BLOCK_SAMPLES];
+    for (uint32_t k = 0; k < entering->count; k++) rays[k] = entering->entries[k].inside;
+    rt_trace_stream(part->accel, part->scratch, rays, entering->count, hits, NULL, &tile->tally);
+    for (uint32_t k = 0; k < entering->count; k++) {
+        const uint32_t i = entering->samples[k];
+        RtHit nearest = {tile->t[i], tile->id[i]};
+        rt_enter_end(instance, &entering->entries[k], hits[k], false, &nearest, &tile->tally);
+        tile->t[i] = nearest.t;
+        tile->id[i] = nearest.object;
+    }
+}
+
 /* Tests the samples of a block that are in columns lo[0]..end[0]-1 and rows lo[1]..end[1]-1 of the tile. */
 static void draw_block(RtItemTile *tile, uint32_t block, const RtItemFootprint *at, uint32_t id,
                        const uint32_t lo[2], const uint32_t end[2]) {
@@ -306,6 +327,8 @@ static void draw_block(RtItemTile *tile, uint32_t block, const RtItemFootprint *
     const uint32_t left = block % RT_ITEM_ACROSS * RT_ITEM_BLOCK,
                    top = block / RT_ITEM_ACROSS * RT_ITEM_BLOCK;
     RtRay ray = rt_view_ray(&tile->buffer->view, tile->column, tile->row);
+    Entering entering = {.count = 0};
+    ray.kind = 0; /* one tally for all kinds */
     for (uint32_t k = 0; k < RT_ITEM_BLOCK_SAMPLES; k++) {
         const uint32_t i = block * RT_ITEM_BLOCK_SAMPLES + k;
         const uint32_t column = left + k % RT_ITEM_BLOCK, row = top + k / RT_ITEM_BLOCK;
@@ -315,10 +338,17 @@ static void draw_block(RtItemTile *tile, uint32_t block, const RtItemFootprint *
         ray.dir = rt_vec3(tile->dir[i][0], tile->dir[i][1], tile->dir[i][2]);
         RtPreparedRay prepared;
         rt_hit_ray(&prepared, g, &ray, rt_query_hit_memory(&tile->query));
+        if (rt_is_instance(g, id)) {
+            entering.samples[entering.count] = i;
+            entering.count +=
+                rt_enter_begin(g, id, &prepared, &nearest, &entering.entries[entering.count], &tile->tally);
+            continue;
+        }
         rt_test_object(g, id, &prepared, false, &nearest, &tile->tally);
         tile->t[i] = nearest.t;
         tile->id[i] = nearest.object;
     }
+    if (entering.count > 0) enter_part(tile, rt_instance_of(g, id), &entering);
     rt_item_update_farthest(tile, block);
 }
 
