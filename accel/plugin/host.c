@@ -7,12 +7,12 @@
  * Object tests are counted here, whatever the plugin does with its counters, unless it has hit functions of
  * its own.
  *
- * To a plugin an instance is one more object, which raytally tests, and so answers from below name instances
- * as well. That keeps the order of hits, since the objects of an instance have consecutive ids. The answer
- * that leaves names the object in the instance: the one that its ray was told of last or, if that was
- * another, the one that a further test finds. */
+ * To a plugin an instance is one object, which raytally tests; answers from below name instances, too. The
+ * order of hits stays, since objects in an instance have consecutive ids. The final answer names the object
+ * within: that of the last hit that the plugin was told of, or of a further test. */
 #include "accel/kernel.h"
 #include "accel/plugin/channel.h"
+#include "accel/plugin/events.h"
 #include "core/base/parallel.h"
 
 #include <inttypes.h>
@@ -50,13 +50,6 @@ typedef struct Plugin {
     RtError error;
 } Plugin;
 
-typedef struct ShownEvents {
-    const char *name;                  /* of the accelerator */
-    const raytally_counters *counters; /* of the ray's kind, which the plugin counts in; NULL: none */
-    raytally_counters shown;           /* so many of them became events */
-    RtHit best;                        /* so far */
-} ShownEvents;
-
 enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
 
 /* The plugin sees only the first member of the first. */
@@ -73,7 +66,7 @@ typedef struct PluginQuery {
     bool counting;
     /* In a stream that is counted: of object tests, and of the layers below. */
     RtTally tallies[RT_RAY_KIND_COUNT], below[RT_RAY_KIND_COUNT];
-    ShownEvents events;
+    RtPluginEvents events;
 } PluginQuery;
 
 /* ---- reports ---- */
@@ -118,51 +111,6 @@ static void break_at_ray(Plugin *accel, const RtRay *ray, const char *what, uint
              accel->base.scene->geometry.object_count, text);
 }
 
-/* ---- the events of a ray that is traced for an observer ---- */
-
-/* Object tests and built-in layers report theirs, as everywhere (core/base/observe.h). A plugin counts its
- * steps and extent tests, and may show each (raytally_show); what it counts and does not show becomes an
- * event without a name and a box, before the next object test. */
-
-/* Beyond that it counted below zero, and breaks. */
-enum { MOST_COUNTED = 1 << 24 };
-
-/* Whether the plugin counted something that was not shown yet; then it counts as shown. */
-static bool take(ShownEvents *events, int counter) {
-    const uint64_t counted = events->counters->at[counter];
-    if (events->shown.at[counter] >= counted || counted > MOST_COUNTED) return false;
-    events->shown.at[counter]++;
-    return true;
-}
-
-static RtTraced next_step(ShownEvents *events) {
-    const bool leaf = take(events, RAYTALLY_LEAF_STEPS), empty = take(events, RAYTALLY_EMPTY_STEPS);
-    return (RtTraced){.kind = RT_TRACED_STEP, .leaf = leaf, .empty = empty};
-}
-
-/* All events except those of `but`. */
-static void catch_up(ShownEvents *events, int but) {
-    static const struct {
-        int counter;
-        RtTracedKind kind;
-    } others[] = {{RAYTALLY_EXTENT_TESTS, RT_TRACED_EXTENT_TEST},
-                  {RAYTALLY_REPEATS_AVOIDED, RT_TRACED_REPEAT_AVOIDED},
-                  {RAYTALLY_PASSED_ON, RT_TRACED_PASSED_ON}};
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-        const char *what = others[i].kind == RT_TRACED_PASSED_ON ? events->name : NULL;
-        while (others[i].counter != but && take(events, others[i].counter))
-            rt_observe(&(RtTraced){.kind = others[i].kind, .what = what, .index = RT_NO_OBJECT});
-    }
-    while (but != RAYTALLY_STEPS && take(events, RAYTALLY_STEPS)) {
-        const RtTraced step = next_step(events);
-        rt_observe(&step);
-    }
-}
-
-static void report_counted(ShownEvents *events) {
-    if (rt_trace_observer && events->counters) catch_up(events, RAYTALLY_COUNTERS);
-}
-
 /* ---- what the plugin calls ---- */
 
 /* Keeps the hit of a ray, if that is one of the stream. */
@@ -188,10 +136,10 @@ RT_KERNEL bool test_object(PluginQuery *query, const RtPreparedRay *ray, uint32_
 }
 
 static int other_hit(const raytally_prepared *ray, uint32_t id, float *t) {
+    PluginQuery *query = (PluginQuery *)ray->query;
     RtHit hit = RT_MISS;
-    const PluginQuery *query = (PluginQuery *)ray->query;
     if (!rt_is_instance(query->geometry, id)) return rt_rarer_hit(query->geometry, id, ray, t, NULL);
-    test_object((PluginQuery *)ray->query, ray, id, false, &hit, NULL);
+    test_object(query, ray, id, false, &hit, NULL);
     *t = hit.t;
     return hit.object != RT_NO_OBJECT;
 }
@@ -219,7 +167,7 @@ static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32
     PluginQuery *query = (PluginQuery *)ray->query;
     if (!query->counting) return hits_of(ray, ids, count, any, best, NULL);
     RtTally tally = {0};
-    report_counted(&query->events);
+    rt_plugin_report_counted(&query->events);
     int over = hits_of(ray, ids, count, any, best, &tally);
     query->events.best = (RtHit){best->t, best->object};
     rt_tally_add(&query->tallies[ray->ray->kind], &tally);
@@ -251,7 +199,7 @@ static bool can_pass_on(PluginQuery *query, const RtRay *rays, size_t count) {
 /* Traces a stream in the layer below, which may be a plugin's, too. */
 static void trace_below(PluginQuery *query, const RtRay *rays, size_t count, RtHit *hits,
                         uint32_t *occluders) {
-    report_counted(&query->events);
+    rt_plugin_report_counted(&query->events);
     if (can_pass_on(query, rays, count)) {
         rt_trace_stream(query->accel->base.below, query->scratch + 1, rays, count, hits, occluders,
                         query->counting ? query->below : NULL);
@@ -276,26 +224,8 @@ static void occluded_below(raytally_query *face, const raytally_ray *rays, size_
     trace_below((PluginQuery *)face, (const RtRay *)rays, count, NULL, occluders);
 }
 
-static void show(const raytally_prepared *ray, uint32_t counter, uint32_t number,
-                 const raytally_box *theirs) {
-    ShownEvents *events = &((PluginQuery *)ray->query)->events;
-    RtBox box;
-    RtTraced event = {.kind = RT_TRACED_EXTENT_TEST};
-    float enter;
-    if (!events->counters || !(counter == RAYTALLY_STEPS || (counter == RAYTALLY_EXTENT_TESTS && theirs)))
-        return;
-    catch_up(events, (int)counter);
-    if (!take(events, (int)counter)) return;
-    if (counter == RAYTALLY_STEPS) event = next_step(events);
-    event.what = "node";
-    event.index = number;
-    if (theirs) {
-        memcpy(&box, theirs, sizeof box);
-        event.box = &box;
-        event.met = counter == RAYTALLY_EXTENT_TESTS &&
-                    raytally_box_hit(theirs, ray, rt_limit(ray, &events->best), &enter);
-    }
-    rt_observe(&event);
+static void show(const raytally_prepared *ray, uint32_t counter, uint32_t number, const raytally_box *box) {
+    rt_plugin_show(&((PluginQuery *)ray->query)->events, ray, counter, number, box);
 }
 
 #define HOST(show_or_null)                                                                                   \
@@ -384,6 +314,7 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
     query->now.face.host = query->counting && rt_trace_observer ? &observed_host : &host;
     query->now.face.crossings = scratch->hit_memory;
     query->scratch = scratch;
+    /* Instances are tested here, up to the best hit. */
     query->now.face.object_count =
         query->counting ? 0 : query->geometry->object_count - query->geometry->instance_count;
     query->rays = count;
@@ -523,7 +454,7 @@ static void start_counting(PluginQuery *query, raytally_counters *counters, uint
     memset(query->tallies, 0, sizeof query->tallies);
     memset(query->below, 0, sizeof query->below);
     query->counting = true;
-    query->events = (ShownEvents){
+    query->events = (RtPluginEvents){
         .name = accel->ops->name, .counters = accel->counts ? &counters[kind] : NULL, .best = RT_MISS};
 }
 
@@ -548,7 +479,7 @@ static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *r
         else
             take_hits(query, rays + first, n, theirs, hits + first);
         query->counting = false;
-        if (counted) report_counted(&query->events);
+        if (counted) rt_plugin_report_counted(&query->events);
         uint32_t kinds = 0;
         for (size_t i = 0; counted && i < n; i++) kinds |= 1u << rays[first + i].kind;
         if (counted) add_counters(query, counters, n, kinds, tallies);
