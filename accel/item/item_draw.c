@@ -6,8 +6,8 @@
  * list is long, and large objects hide others. A tile's objects come in one order, triangles first: neither
  * the samples nor the hit functions asked depend on the number of threads.
  *
- * An instance is drawn by its box, and its part answers: to draw its objects was slower in a forest, where
- * drawing copies took four times as long.
+ * An instance is drawn by its box, and its part answers. To draw its objects would cost what drawing copies
+ * does: in a forest four times as much.
  *
  * Where an object is seen: its box, projected. The box is grown by E = 2^-19 M + 2^-21 |eye|
  * (accel/raster/raster.h, 1). A hit is off the object's box by the thickness, 2^-20 M, by 2^-23 of the eye's
