@@ -117,6 +117,8 @@ RtStatus rt_accel_validate(const RtAccel *accel, RtError *error) {
 RtStatus rt_accel_check(const RtAccel *accel, RtError *error) {
     for (; accel; accel = accel->below) {
         if (accel->ops->check) RT_TRY(accel->ops->check(accel, error));
+        for (uint32_t i = 0; accel->parts && i < accel->scene->part_count; i++)
+            RT_TRY(rt_accel_check(accel->parts[i], error));
     }
     return RT_OK;
 }

@@ -30,6 +30,11 @@ RT_KERNEL bool rt_enter_begin(const RtGeometry *geometry, uint32_t id, const RtP
     return true;
 }
 
+/* In the part, hits may be beyond the interval by rounding. */
+RT_KERNEL float rt_clamp_entry(const RtEntry *entry, float t) {
+    return t < entry->near ? entry->near : t > entry->far ? entry->far : t;
+}
+
 /* Takes the answer of the part, which has counted the ray, too: its nearest hit, or if `any` an occluder,
  * with any t. Returns as rt_take_hit. */
 RT_KERNEL bool rt_enter_end(const RtInstance *instance, const RtEntry *entry, RtHit hit, bool any,
@@ -40,8 +45,7 @@ RT_KERNEL bool rt_enter_end(const RtInstance *instance, const RtEntry *entry, Rt
         RT_OBSERVE(tally, .kind = RT_TRACED_LEFT);
         return false;
     }
-    if (any || hit.t < entry->near) hit.t = entry->near;
-    if (hit.t > entry->far) hit.t = entry->far;
+    hit.t = any ? entry->near : rt_clamp_entry(entry, hit.t);
     hit.object += instance->first;
     RT_OBSERVE(tally, .kind = RT_TRACED_LEFT, .met = true, .t = hit.t);
     if (rt_hit_before(hit.t, hit.object, *best)) *best = hit;

@@ -73,17 +73,16 @@ void rt_remote_pass_close(RtRemotePass *pass);
 /* Marks a remote accelerator as broken: `what` was found wrong with it while it did `doing`. */
 void rt_remote_break(const RtAccel *accel, const char *what, const char *doing);
 
-/* Answers of a plugin are not trusted: whether `hit` is a miss, or an object of the scene at a finite t on
+/* Answers of a plugin are not trusted: whether `hit` is a miss, or an object 0..objects-1 at a finite t on
  * the ray. */
-static inline bool rt_hit_is_possible(const RtAccel *accel, const RtRay *ray, RtHit hit) {
+static inline bool rt_hit_is_possible(uint32_t objects, const RtRay *ray, RtHit hit) {
     if (hit.object == RT_NO_OBJECT) return hit.t == INFINITY;
-    return hit.object < accel->scene->geometry.object_count && hit.t >= ray->tmin && hit.t <= ray->tmax &&
-           hit.t < INFINITY;
+    return hit.object < objects && hit.t >= ray->tmin && hit.t <= ray->tmax && hit.t < INFINITY;
 }
 
 /* The same of an occluder. An exact accelerator must name it. */
-static inline bool rt_occluder_is_possible(const RtAccel *accel, uint32_t occluder) {
-    return (occluder == RT_NO_OBJECT) | (occluder < accel->scene->geometry.object_count) |
+static inline bool rt_occluder_is_possible(const RtAccel *accel, uint32_t objects, uint32_t occluder) {
+    return (occluder == RT_NO_OBJECT) | (occluder < objects) |
            ((occluder == RT_UNNAMED_OBJECT) & !accel->exact);
 }
 

@@ -94,14 +94,14 @@ static void describe(const RtAccel *accel, RtDescription *out) {
 }
 
 /* Every object is asked. */
-static RtStatus check_sample(const RtItemBuffer *buffer, size_t i, RtHitMemory *hit_memory, RtError *error) {
+static RtStatus check_sample(const RtItemBuffer *buffer, size_t i, const RtQuery *query, RtError *error) {
     const RtGeometry *g = rt_item_geometry(buffer);
     uint32_t columns = buffer->view.sampling.columns, named = buffer->samples[i];
     RtRay ray = rt_view_ray(&buffer->view, (uint32_t)(i % columns), (uint32_t)(i / columns));
     RtPreparedRay prepared;
     RtHit first = RT_MISS;
     char names[48] = "no object";
-    rt_hit_ray(&prepared, g, &ray, hit_memory);
+    rt_hit_ray(&prepared, g, &ray, rt_query_hit_memory(query));
     for (uint32_t id = 0; id < g->object_count; id++) rt_test_object(g, id, &prepared, false, &first, NULL);
     if (first.object == named) return RT_OK;
     if (named != RT_NO_OBJECT) snprintf(names, sizeof names, "object %u", named);
@@ -116,12 +116,12 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
     const RtItemBuffer *buffer = (const RtItemBuffer *)accel;
     size_t samples = rt_item_sample_count(buffer);
     uint64_t every = (uint64_t)samples * accel->scene->geometry.object_count / MOST_TESTS + 1;
-    RtHitMemory *hit_memory;
-    RT_TRY(rt_hit_memory_alloc(&accel->scene->geometry, &hit_memory, error));
+    RtQuery query;
+    RT_TRY(rt_query_init(&query, accel->below, error));
     RtStatus status = RT_OK;
     for (size_t i = 0; i < samples && status == RT_OK; i += every)
-        status = check_sample(buffer, i, hit_memory, error);
-    rt_free(hit_memory);
+        status = check_sample(buffer, i, &query, error);
+    rt_query_clear(&query);
     return status;
 }
 
@@ -131,7 +131,6 @@ const RtAccelOps rt_item_ops = {
         "overlay: the object that is seen at each sample of the image, found by projecting all objects",
     .paper = "Weghorst, Hooper & Greenberg 1984, Improved Computational Methods for Ray Tracing, TOG 3(1)",
     RT_PARAMS_OF(params),
-    .flat = true,
     .kinds = 1u << RT_RAY_PRIMARY,
     .bytes = sizeof(RtItemBuffer),
     .build = build,

@@ -50,7 +50,7 @@ typedef struct RtItemBuffer {
     RtAccel base;
     const RtItemRaster *raster;
     RtView view;
-    uint32_t *samples; /* [rows * columns]: object ids */
+    uint32_t *samples; /* [rows * columns]: object ids, also of those in instances */
     /* The dir of a sample's ray is columns[column] + rows[row], rounded to float32; the fourth component is
      * its tmax. Up to whole tiles, beyond the image. */
     RtItemTerm *columns, *rows;
@@ -104,10 +104,10 @@ typedef struct RtItemTile {
     uint32_t id[RT_ITEM_TILE_SAMPLES]; /* its object, or RT_NO_OBJECT */
     float farthest[RT_ITEM_BLOCKS];    /* t of a block */
     const RtItemBuffer *buffer;
-    uint32_t column, row;    /* of its upper left sample */
-    uint32_t columns, rows;  /* of it that are in the image */
-    RtHitMemory *hit_memory; /* of hit functions */
-    RtTally tally;           /* of the hit functions asked */
+    uint32_t column, row;   /* of its upper left sample */
+    uint32_t columns, rows; /* of it that are in the image */
+    RtQuery query;          /* of the layer below, for hit functions in parts */
+    RtTally tally;          /* of the hit functions asked */
 } RtItemTile;
 
 /* Draws an object that is no triangle. */

@@ -3,8 +3,8 @@
  * float32: the samples that may see them, and their tiles; and drawing one into a tile, at the samples of a
  * block at once. And answering primary rays from the samples that they belong to: rays of triangles are
  * tested RT_LANES at a time; rays that are not those of samples are passed on. */
+#include "accel/instance.h"
 #include "accel/item/item.h"
-#include "accel/kernel.h"
 
 /* ---- pairs of a ray from the eye and a triangle, tested together ---- */
 
@@ -428,8 +428,31 @@ RT_KERNEL bool is_of_sample(const RtItemBuffer *self, const RtRay *ray, RtFloat4
     return rt_bits(same) == 15;
 }
 
+/* The nearest hit of a ray, which is on the object with this id. In instances, their parts need not be asked.
+ */
+RT_KERNEL void hit_object(const RtGeometry *g, uint32_t id, const RtRay *ray, RtHitMemory *hit_memory,
+                          RtHit *hit, RtTally *tally) {
+    const RtHit none = RT_MISS;
+    RtEntry entries[RT_MAX_NESTING];
+    RtPreparedRay prepared;
+    uint32_t levels = 0, object = id, at;
+    rt_hit_ray(&prepared, g, ray, hit_memory);
+    while (rt_is_instance(g, at = rt_geometry_holder(g, object))) {
+        const RtInstance *instance = rt_instance_of(g, at);
+        if (!rt_enter_begin(g, at, &prepared, &none, &entries[levels], tally)) return;
+        object -= instance->first;
+        g = instance->geometry;
+        rt_hit_ray(&prepared, g, &entries[levels++].inside, hit_memory);
+    }
+    rt_test_object(g, object, &prepared, false, hit, tally);
+    if (hit->object == RT_NO_OBJECT) return;
+    hit->object = id;
+    while (levels-- > 0) hit->t = rt_clamp_entry(&entries[levels], hit->t);
+}
+
 /* If it is, *triangle is its index. */
 RT_KERNEL bool is_triangle(const RtGeometry *g, uint32_t id, uint32_t *triangle) {
+    if (id >= g->object_count - g->instance_count) return false;
     *triangle = rt_ref_index(g->objects[id]);
     return rt_raster_is_triangle(g->objects[id]);
 }
@@ -467,10 +490,8 @@ RT_KERNEL void answer_run(const RtAccel *accel, const RtScratch *scratch, const 
             add_pending(&run.pending, g, triangle, ray->dir.at, (uint32_t)i);
             if (run.pending.count == RT_ITEM_PENDING) flush_pending(&run, tallies);
         } else {
-            RtPreparedRay prepared;
             RtHit hit = RT_MISS;
-            rt_hit_ray(&prepared, g, ray, scratch->hit_memory);
-            rt_test_object(g, id, &prepared, false, &hit, tally);
+            hit_object(g, id, ray, scratch->hit_memory, &hit, tally);
             rt_put_answer(&hit, i, false, hits, NULL, tally);
         }
     }

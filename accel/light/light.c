@@ -435,7 +435,10 @@ static bool is_too_much(const RtTally *tally) {
 static bool make_probe(const RtScene *scene, const RtRay *ray, RtHit hit, uint32_t light,
                        RtHitMemory *hit_memory, RtRay *probe) {
     RtVec3d point = rt_ray_point(ray, hit.t), dir = rt_widen(ray->dir);
-    RtVec3d side = rt_object_normals(&scene->geometry, hit.object, ray, hit.t, hit_memory).geometric;
+    RtPlace at;
+    rt_scene_place(scene, hit.object, ray, &at);
+    RtVec3d side = rt_object_normals(&at.scene->geometry, at.object, &at.ray, hit.t, hit_memory).geometric;
+    if (at.scene != scene) side = rt_normalized(rt_transform_normald(&at.to_world, side));
     if (rt_dotd(side, dir) > 0) side = rt_scaled(side, -1);
     double reach = (double)hit.t * sqrt(rt_dotd(dir, dir)) + sqrt(rt_dotd(point, point));
     *probe = (RtRay){.org = rt_narrow(rt_add_scaledd(point, side, 0x1p-18 * reach)),
@@ -603,7 +606,6 @@ const RtAccelOps rt_light_ops = {
     .paper = "Haines & Greenberg 1986, The Light Buffer: A Shadow-Testing Accelerator, CG&A 6(9)",
     RT_PARAMS_OF(params),
     RT_BEST("cells=0|256|512|1024"),
-    .flat = true,
     .kinds = 1u << RT_RAY_SHADOW,
     .trial = "light:cells=100", /* a scene of few objects has no cells but those asked for */
     .bytes = sizeof(RtLightBuffer),

@@ -114,7 +114,7 @@ RT_KERNEL void test_one(const RayBatch *batch, uint32_t ray, uint32_t id) {
     RtPreparedRay prepared;
     RtHit hit = RT_MISS;
     rt_hit_ray(&prepared, g, &batch->rays[ray], batch->scratch->hit_memory);
-    if (rt_test_object(g, id, &prepared, true, &hit, batch->tally)) batch->occluders[ray] = id;
+    if (rt_test_object(g, id, &prepared, true, &hit, batch->tally)) batch->occluders[ray] = hit.object;
 }
 
 /* Rays and triangles of pairs first..first+count-1 to lanes. */

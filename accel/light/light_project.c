@@ -17,8 +17,8 @@
  *
  * Of the cells of the rectangle around an object's box,
  *
- * - balls (spheres, and those about cones and CSG trees) are seen in those that the cone about them meets:
- *   points of the cell at depth z are at most z * half * sqrt(2) from its axis;
+ * - balls (spheres, and those about cones, CSG trees and the boxes of instances) are seen in those that the
+ * cone about them meets: points of the cell at depth z are at most z * half * sqrt(2) from its axis;
  * - triangles and polygons are seen in those that no edge function separates from them (bound 3). In a cell
  *   s . q <= z M, with M the largest of its corners at depth 1, so a cell is separated if d M < -margin |s|_1
  *   for M < 0 and the least depth d of the grown box. The slack is more than twice that: s, computed from a

@@ -5,9 +5,14 @@
  * own: the answers and the plugin's memory, both between guard pages; known bytes (canaries) fill the rest of
  * their pages. Every answer is checked before anything else reads it: the object exists, and t is on the ray.
  * Object tests are counted here, whatever the plugin does with its counters, unless it has hit functions of
- * its own. */
+ * its own.
+ *
+ * To a plugin an instance is one object, which raytally tests; answers from below name instances, too. The
+ * order of hits stays, since objects in an instance have consecutive ids. The final answer names the object
+ * within: that of the last hit that the plugin was told of, or of a further test. */
 #include "accel/kernel.h"
 #include "accel/plugin/channel.h"
+#include "accel/plugin/events.h"
 #include "core/base/parallel.h"
 
 #include <inttypes.h>
@@ -45,12 +50,7 @@ typedef struct Plugin {
     RtError error;
 } Plugin;
 
-typedef struct ShownEvents {
-    const char *name;                  /* of the accelerator */
-    const raytally_counters *counters; /* of the ray's kind, which the plugin counts in; NULL: none */
-    raytally_counters shown;           /* so many of them became events */
-    RtHit best;                        /* so far */
-} ShownEvents;
+enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
 
 /* The plugin sees only the first member of the first. */
 typedef struct PluginQuery {
@@ -61,10 +61,12 @@ typedef struct PluginQuery {
     char *memory_end; /* of its pages */
     char *answers_end;
     const RtScratch *scratch; /* of this layer and those below */
+    size_t rays;              /* of the stream */
+    RtHit told[MOST_ANSWERS]; /* of each ray: the last hit in an instance */
     bool counting;
     /* In a stream that is counted: of object tests, and of the layers below. */
     RtTally tallies[RT_RAY_KIND_COUNT], below[RT_RAY_KIND_COUNT];
-    ShownEvents events;
+    RtPluginEvents events;
 } PluginQuery;
 
 /* ---- reports ---- */
@@ -109,55 +111,37 @@ static void break_at_ray(Plugin *accel, const RtRay *ray, const char *what, uint
              accel->base.scene->geometry.object_count, text);
 }
 
-/* ---- the events of a ray that is traced for an observer ---- */
-
-/* Object tests and built-in layers report theirs, as everywhere (core/base/observe.h). A plugin counts its
- * steps and extent tests, and may show each (raytally_show); what it counts and does not show becomes an
- * event without a name and a box, before the next object test. */
-
-/* Beyond that it counted below zero, and breaks. */
-enum { MOST_COUNTED = 1 << 24 };
-
-/* Whether the plugin counted something that was not shown yet; then it counts as shown. */
-static bool take(ShownEvents *events, int counter) {
-    const uint64_t counted = events->counters->at[counter];
-    if (events->shown.at[counter] >= counted || counted > MOST_COUNTED) return false;
-    events->shown.at[counter]++;
-    return true;
-}
-
-static RtTraced next_step(ShownEvents *events) {
-    const bool leaf = take(events, RAYTALLY_LEAF_STEPS), empty = take(events, RAYTALLY_EMPTY_STEPS);
-    return (RtTraced){.kind = RT_TRACED_STEP, .leaf = leaf, .empty = empty};
-}
-
-/* All events except those of `but`. */
-static void catch_up(ShownEvents *events, int but) {
-    static const struct {
-        int counter;
-        RtTracedKind kind;
-    } others[] = {{RAYTALLY_EXTENT_TESTS, RT_TRACED_EXTENT_TEST},
-                  {RAYTALLY_REPEATS_AVOIDED, RT_TRACED_REPEAT_AVOIDED},
-                  {RAYTALLY_PASSED_ON, RT_TRACED_PASSED_ON}};
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-        const char *what = others[i].kind == RT_TRACED_PASSED_ON ? events->name : NULL;
-        while (others[i].counter != but && take(events, others[i].counter))
-            rt_observe(&(RtTraced){.kind = others[i].kind, .what = what, .index = RT_NO_OBJECT});
-    }
-    while (but != RAYTALLY_STEPS && take(events, RAYTALLY_STEPS)) {
-        const RtTraced step = next_step(events);
-        rt_observe(&step);
-    }
-}
-
-static void report_counted(ShownEvents *events) {
-    if (rt_trace_observer && events->counters) catch_up(events, RAYTALLY_COUNTERS);
-}
-
 /* ---- what the plugin calls ---- */
 
+/* Keeps the hit of a ray, if that is one of the stream. */
+static void tell(PluginQuery *query, const RtRay *ray, RtHit hit) {
+    const size_t i = ((uintptr_t)ray - (uintptr_t)query->now.stream) / sizeof *ray;
+    if (i < query->rays && &query->now.stream[i] == ray) query->told[i] = hit;
+}
+
+/* rt_test_object, which names an instance rather than an object in it. */
+RT_KERNEL bool test_object(PluginQuery *query, const RtPreparedRay *ray, uint32_t id, bool any, RtHit *best,
+                           RtTally *tally) {
+    if (!rt_is_instance(query->geometry, id))
+        return rt_test_object(query->geometry, id, ray, any, best, tally);
+    RtHit hit = {best->t, RT_NO_OBJECT};
+    rt_test_object(query->geometry, id, ray, any, &hit, tally);
+    now = &query->now;
+    if (hit.object == RT_NO_OBJECT) return false;
+    if (rt_hit_before(hit.t, id, *best)) {
+        tell(query, (const RtRay *)ray->ray, hit);
+        *best = (RtHit){hit.t, id};
+    }
+    return any;
+}
+
 static int other_hit(const raytally_prepared *ray, uint32_t id, float *t) {
-    return rt_rarer_hit(((PluginQuery *)ray->query)->geometry, id, ray, t, NULL);
+    PluginQuery *query = (PluginQuery *)ray->query;
+    RtHit hit = RT_MISS;
+    if (!rt_is_instance(query->geometry, id)) return rt_rarer_hit(query->geometry, id, ray, t, NULL);
+    test_object(query, ray, id, false, &hit, NULL);
+    *t = hit.t;
+    return hit.object != RT_NO_OBJECT;
 }
 
 RT_KERNEL int hits_of(const raytally_prepared *ray, const uint32_t *ids, uint32_t count, bool any,
@@ -172,7 +156,7 @@ RT_KERNEL int hits_of(const raytally_prepared *ray, const uint32_t *ids, uint32_
                          ids[i]);
             break;
         }
-        over = rt_test_object(geometry, ids[i], ray, any, &hit, tally);
+        over = test_object(query, ray, ids[i], any, &hit, tally);
     }
     *best = (raytally_hit){hit.t, hit.object};
     return over;
@@ -183,7 +167,7 @@ static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32
     PluginQuery *query = (PluginQuery *)ray->query;
     if (!query->counting) return hits_of(ray, ids, count, any, best, NULL);
     RtTally tally = {0};
-    report_counted(&query->events);
+    rt_plugin_report_counted(&query->events);
     int over = hits_of(ray, ids, count, any, best, &tally);
     query->events.best = (RtHit){best->t, best->object};
     rt_tally_add(&query->tallies[ray->ray->kind], &tally);
@@ -191,6 +175,8 @@ static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32
     counters->at[RAYTALLY_OBJECT_TESTS] += tally.object_tests;
     counters->at[RAYTALLY_OBJECT_HITS] += tally.object_hits;
     counters->at[RAYTALLY_CSG_TESTS] += tally.csg_tests;
+    tally.object_tests = tally.object_hits = tally.csg_tests = 0;
+    rt_tally_add(&query->below[ray->ray->kind], &tally); /* of parts */
     return over;
 }
 
@@ -213,7 +199,7 @@ static bool can_pass_on(PluginQuery *query, const RtRay *rays, size_t count) {
 /* Traces a stream in the layer below, which may be a plugin's, too. */
 static void trace_below(PluginQuery *query, const RtRay *rays, size_t count, RtHit *hits,
                         uint32_t *occluders) {
-    report_counted(&query->events);
+    rt_plugin_report_counted(&query->events);
     if (can_pass_on(query, rays, count)) {
         rt_trace_stream(query->accel->base.below, query->scratch + 1, rays, count, hits, occluders,
                         query->counting ? query->below : NULL);
@@ -221,6 +207,12 @@ static void trace_below(PluginQuery *query, const RtRay *rays, size_t count, RtH
         for (size_t i = 0; i < count; i++) rt_put_answer(&RT_MISS, i, !hits, hits, occluders, NULL);
     }
     now = &query->now;
+    for (size_t i = 0; query->geometry->instance_count > 0 && i < count; i++) {
+        uint32_t *object = hits ? &hits[i].object : &occluders[i];
+        if (*object == RT_NO_OBJECT || *object == RT_UNNAMED_OBJECT) continue;
+        tell(query, &rays[i], (RtHit){hits ? hits[i].t : 0, *object});
+        *object = rt_geometry_holder(query->geometry, *object);
+    }
 }
 
 static void nearest_below(raytally_query *face, const raytally_ray *rays, size_t count, raytally_hit *hits) {
@@ -232,26 +224,8 @@ static void occluded_below(raytally_query *face, const raytally_ray *rays, size_
     trace_below((PluginQuery *)face, (const RtRay *)rays, count, NULL, occluders);
 }
 
-static void show(const raytally_prepared *ray, uint32_t counter, uint32_t number,
-                 const raytally_box *theirs) {
-    ShownEvents *events = &((PluginQuery *)ray->query)->events;
-    RtBox box;
-    RtTraced event = {.kind = RT_TRACED_EXTENT_TEST};
-    float enter;
-    if (!events->counters || !(counter == RAYTALLY_STEPS || (counter == RAYTALLY_EXTENT_TESTS && theirs)))
-        return;
-    catch_up(events, (int)counter);
-    if (!take(events, (int)counter)) return;
-    if (counter == RAYTALLY_STEPS) event = next_step(events);
-    event.what = "node";
-    event.index = number;
-    if (theirs) {
-        memcpy(&box, theirs, sizeof box);
-        event.box = &box;
-        event.met = counter == RAYTALLY_EXTENT_TESTS &&
-                    raytally_box_hit(theirs, ray, rt_limit(ray, &events->best), &enter);
-    }
-    rt_observe(&event);
+static void show(const raytally_prepared *ray, uint32_t counter, uint32_t number, const raytally_box *box) {
+    rt_plugin_show(&((PluginQuery *)ray->query)->events, ray, counter, number, box);
 }
 
 #define HOST(show_or_null)                                                                                   \
@@ -262,8 +236,6 @@ static void show(const raytally_prepared *ray, uint32_t counter, uint32_t number
 static const raytally_host host = HOST(NULL), observed_host = HOST(show);
 
 /* ---- memory between guard pages ---- */
-
-enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
 
 static size_t round_up(size_t bytes, size_t unit) {
     return (bytes + unit - 1) / unit * unit;
@@ -342,7 +314,11 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
     query->now.face.host = query->counting && rt_trace_observer ? &observed_host : &host;
     query->now.face.crossings = scratch->hit_memory;
     query->scratch = scratch;
-    query->now.face.object_count = query->counting ? 0 : query->geometry->object_count;
+    /* Instances are tested here, up to the best hit. */
+    query->now.face.object_count =
+        query->counting ? 0 : query->geometry->object_count - query->geometry->instance_count;
+    query->rays = count;
+    for (size_t i = 0; query->geometry->instance_count > 0 && i < count; i++) query->told[i] = RT_MISS;
     query->now.face.ray = NULL;
     query->now.stream = rays;
     now = &query->now;
@@ -370,13 +346,31 @@ static void break_at_object(Plugin *accel, const RtRay *ray, uint32_t object) {
                  object);
 }
 
+/* The hit of an answer, or if `any` an occluder, by the object that an instance contains. */
+static RtHit name_hit(PluginQuery *query, const RtRay *ray, RtHit answer, RtHit told, bool any) {
+    const RtGeometry *g = query->geometry;
+    RtHit hit = any ? RT_MISS : (RtHit){answer.t, RT_NO_OBJECT};
+    RtPreparedRay prepared;
+    if (answer.object - (g->object_count - g->instance_count) >= g->instance_count) return answer; /* none */
+    if (told.object != RT_NO_OBJECT && (any || told.t == answer.t) &&
+        rt_geometry_holder(g, told.object) == answer.object)
+        return told;
+    rt_hit_ray(&prepared, g, ray, query->now.face.crossings);
+    rt_test_object(g, answer.object, &prepared, any, &hit, NULL);
+    if (hit.object == RT_NO_OBJECT) hit.object = rt_instance_of(g, answer.object)->first; /* it misses */
+    return (RtHit){answer.t, hit.object};
+}
+
 static void take_hits(PluginQuery *query, const RtRay *rays, size_t count, const RtHit *theirs, RtHit *hits) {
     Plugin *accel = query->accel;
     memcpy(hits, theirs, count * sizeof *hits);
     for (size_t i = 0; i < count; i++) {
         const RtHit hit = hits[i];
-        if (rt_hit_is_possible(&accel->base, &rays[i], hit)) continue;
         hits[i] = RT_MISS;
+        if (rt_hit_is_possible(query->geometry->object_count, &rays[i], hit)) {
+            hits[i] = name_hit(query, &rays[i], hit, query->told[i], false);
+            continue;
+        }
         if (hit.object < accel->base.scene->geometry.object_count || hit.object == RT_NO_OBJECT) {
             char text[RT_RAY_TEXT];
             rt_ray_format(&rays[i], text, sizeof text);
@@ -392,10 +386,10 @@ static void take_hits(PluginQuery *query, const RtRay *rays, size_t count, const
 static void test_occluders(PluginQuery *query, const RtRay *rays, size_t count, const uint32_t *occluders) {
     for (size_t i = 0; i < count; i++) {
         RtPreparedRay ray;
-        float t;
+        RtHit hit = RT_MISS;
         if (occluders[i] == RT_NO_OBJECT) continue;
         rt_hit_ray(&ray, query->geometry, &rays[i], query->now.face.crossings);
-        if (rt_object_hit(query->geometry, occluders[i], &ray, &t, NULL)) continue;
+        if (rt_test_object(query->geometry, occluders[i], &ray, true, &hit, NULL)) continue;
         break_at_ray(query->accel, &rays[i], "it answered with an occluder that the ray does not hit",
                      occluders[i]);
     }
@@ -406,11 +400,13 @@ static void take_occluders(PluginQuery *query, const RtRay *rays, size_t count, 
     Plugin *accel = query->accel;
     for (size_t i = 0; i < count; i++) {
         occluders[i] = theirs[i];
-        if (rt_occluder_is_possible(&accel->base, theirs[i])) continue;
+        if (rt_occluder_is_possible(&accel->base, query->geometry->object_count, theirs[i])) continue;
         break_at_object(accel, &rays[i], theirs[i]);
         occluders[i] = RT_NO_OBJECT;
     }
     if (query->counting && accel->base.exact) test_occluders(query, rays, count, occluders);
+    for (size_t i = 0; i < count; i++)
+        occluders[i] = name_hit(query, &rays[i], (RtHit){0, occluders[i]}, query->told[i], true).object;
 }
 
 _Static_assert((int)RAYTALLY_COUNTERS_KNOWN == (int)RT_TALLY_COUNTER_COUNT &&
@@ -421,9 +417,10 @@ _Static_assert((int)RAYTALLY_COUNTERS_KNOWN == (int)RT_TALLY_COUNTER_COUNT &&
 
 /* Checks the counts of a stream of so many rays, and adds them and those of the layers below, where rays and
  * hits count again. */
-static void add_counters(PluginQuery *query, const raytally_counters *counted, size_t rays,
+static void add_counters(PluginQuery *query, const raytally_counters *counted, size_t rays, uint32_t kinds,
                          RtTally *tallies) {
-    const bool tests_here = !(query->accel->table->flags & RAYTALLY_OWN_HITS) && query->accel->base.counts;
+    const bool is_base = !query->accel->base.below,
+               tests_here = !(query->accel->table->flags & RAYTALLY_OWN_HITS) && query->accel->base.counts;
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         RtTally theirs;
         memcpy(&theirs, counted[kind].at, sizeof theirs);
@@ -444,6 +441,7 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
                          name, of_kind, count, right);
             }
         }
+        if (is_base && !(kinds >> kind & 1)) continue; /* rays in a part have one tally */
         query->below[kind].rays = query->below[kind].hits = 0;
         rt_tally_add(&tallies[kind], &theirs);
         rt_tally_add(&tallies[kind], &query->below[kind]);
@@ -456,7 +454,7 @@ static void start_counting(PluginQuery *query, raytally_counters *counters, uint
     memset(query->tallies, 0, sizeof query->tallies);
     memset(query->below, 0, sizeof query->below);
     query->counting = true;
-    query->events = (ShownEvents){
+    query->events = (RtPluginEvents){
         .name = accel->ops->name, .counters = accel->counts ? &counters[kind] : NULL, .best = RT_MISS};
 }
 
@@ -481,8 +479,10 @@ static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *r
         else
             take_hits(query, rays + first, n, theirs, hits + first);
         query->counting = false;
-        if (counted) report_counted(&query->events);
-        if (counted) add_counters(query, counters, n, tallies);
+        if (counted) rt_plugin_report_counted(&query->events);
+        uint32_t kinds = 0;
+        for (size_t i = 0; counted && i < n; i++) kinds |= 1u << rays[first + i].kind;
+        if (counted) add_counters(query, counters, n, kinds, tallies);
     }
     for (size_t i = 0; counted && i < count; i++)
         rt_count_answer((any ? occluders[i] : hits[i].object) != RT_NO_OBJECT, &tallies[rays[i].kind]);
@@ -662,7 +662,7 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                             .params = ops->params,
                             .param_count = table->param_count,
                             .kinds = table->flags & RAYTALLY_OVERLAY ? RT_ALL_RAY_KINDS : 0,
-                            .flat = true,
+                            .flat = (table->flags & RAYTALLY_OWN_HITS) != 0,
                             .remote = true,
                             .bytes = sizeof(Plugin),
                             .build = build,

@@ -485,6 +485,7 @@ static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtR
     Stream *stream = (Stream *)channel->message;
     char doing[64];
     bool possible = true;
+    const uint32_t objects = rt_geometry_id_count(&accel->scene->geometry);
     snprintf(doing, sizeof doing, "it answered a stream of %u ray%s", count, rt_plural(count));
     stream->count = count;
     stream->any = occluders != NULL;
@@ -495,12 +496,12 @@ static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtR
     if (answered && tallies) add_tallies(accel, stream->tallies, count, tallies);
     for (uint32_t i = 0; i < count && occluders; i++) {
         occluders[i] = answered ? stream->occluders[i] : RT_NO_OBJECT;
-        possible &= rt_occluder_is_possible(accel, occluders[i]);
+        possible &= rt_occluder_is_possible(accel, objects, occluders[i]);
         if (!possible) occluders[i] = RT_NO_OBJECT;
     }
     for (uint32_t i = 0; i < count && hits; i++) {
         hits[i] = answered ? stream->hits[i] : RT_MISS;
-        possible &= rt_hit_is_possible(accel, &rays[i], hits[i]);
+        possible &= rt_hit_is_possible(objects, &rays[i], hits[i]);
         if (!possible) hits[i] = RT_MISS;
     }
     if (!possible) rt_remote_break(accel, "it overwrote its answers", "it answered a stream");

@@ -233,8 +233,8 @@ typedef struct raytally_build_input {
     const uint32_t *triangle_objects; /**< [triangle_count] the object that each triangle is. */
     const float *spheres;             /**< [4 * sphere_count] centre x, y, z and radius; aligned likewise. */
     const uint32_t *sphere_objects;   /**< [sphere_count] the object that each sphere is. */
-    const uint32_t *other_objects;    /**< [other_count] polygons, cones and CSG trees, which only
-                                         raytally_object_hits can test. */
+    const uint32_t *other_objects;    /**< [other_count] polygons, cones, CSG trees and instances, which only
+                                         raytally_object_hits can test. An instance is one object. */
     uint32_t triangle_count;          /**< Triangles, those without area included, which are never hit. */
     uint32_t sphere_count;            /**< Spheres. */
     uint32_t other_count;             /**< All other objects. */

@@ -367,9 +367,10 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
 /* The plugin's process has checked its hits, but may have overwritten them since. */
 static bool hits_are_possible(const RtAccel *accel, const Plan *plan, const RtRay *rays,
                               const Answers *answers) {
+    const uint32_t objects = rt_geometry_id_count(&accel->scene->geometry);
     for (int w = 0; w < plan->mode_count; w++) {
         for (size_t i = 0; i < plan->count; i++) {
-            if (!rt_hit_is_possible(accel, &rays[i], answers->hits[w][i])) return false;
+            if (!rt_hit_is_possible(objects, &rays[i], answers->hits[w][i])) return false;
         }
     }
     return true;

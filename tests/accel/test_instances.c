@@ -74,6 +74,8 @@ static const char *const specs[] = {
     "cache+wide:in_flight=64,packets=0/wide:in_flight=64,packets=0",
     "brute/extents:kind=slabs",
     "ideal/wide",
+    "item+bvh/grid",
+    "cache+light:cells=20,longest=3+item+wide/wide",
 };
 
 /* Brute answers as the definition says, and all others as brute. */
@@ -444,7 +446,7 @@ RT_TEST(more_objects_than_ids_are_refused) {
 
 RT_TEST(accelerators_that_serve_no_instances_say_so) {
     OWNED_SCENE scene = one_ball(rt_transform_identity());
-    static const char *const flat[] = {"item+bvh", "light+bvh", "cache+light+wide", "embree"};
+    static const char *const flat[] = {"embree", "cache+light+item+embree"};
     for (size_t i = 0; i < sizeof flat / sizeof flat[0]; i++) {
         RtAccel *accel = NULL;
         RtError why = {RT_OK, ""};
@@ -645,7 +647,8 @@ RT_TEST(rays_start_on_the_boxes_of_objects_in_instances) {
 
 RT_TEST(a_shortage_of_memory_is_a_status_and_leaks_nothing) {
     OWNED_SCENE scene = open_family(scene_family("instanced"), 1);
-    static const char *const tried[] = {"brute", "cache+grid/kd", "wide/clusters", "octree/extents"};
+    static const char *const tried[] = {"brute", "cache+grid/kd", "wide/clusters", "octree/extents",
+                                        "light:cells=20+item+bvh"};
     for (size_t i = 0; i < sizeof tried / sizeof tried[0]; i++)
         assert_fails_cleanly(try_accel(&scene, tried[i], error), (void)0);
     assert_failed_allocations_are_reported("family:kind=instanced");

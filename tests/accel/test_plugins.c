@@ -114,6 +114,62 @@ RT_TEST(counts_are_the_same_on_any_number_of_threads) {
     assert_true(once.tally.object_tests > 0 && once.tally.steps > 0);
 }
 
+/* ---- instances ---- */
+
+RT_TEST(to_a_plugin_an_instance_is_an_object_and_its_answers_name_those_within) {
+    static const char *const specs[] = {"my-accel", "bvh_copy", "bvh_copy/grid", "shadow-cache+bvh",
+                                        "light:cells=20+item+shadow-cache+bvh_copy/bvh"};
+    load_all();
+    for (uint64_t seed = 1; seed <= RT_SHARE(4, 2); seed++) {
+        OWNED_BENCH bench;
+        set_up_family(&bench, scene_family(seed % 2 ? "instanced" : "instanced-far"), seed, 100);
+        for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+            RtEquivalence result;
+            OWNED_ACCEL RtAccel *accel = open_accel(&bench.scene, specs[i]);
+            assert_true(rt_accel_is_remote(accel) && accel->exact);
+            assert_ok(rt_equivalence_check(&bench.reference, accel, 2, &result, error));
+            assert_int_equal(result.verdicts[RT_EQUAL], result.rays);
+            assert_int_equal(result.occluded_wrong, 0);
+        }
+    }
+}
+
+RT_TEST(in_instances_a_plugin_counts_what_the_built_in_one_that_it_copies_counts) {
+    static const char *const pairs[][2] = {
+        {"bvh", "bvh_copy"}, {"bvh/grid", "bvh_copy/grid"}, {"cache+bvh/kd", "shadow-cache+bvh/kd"}};
+    OWNED_BENCH bench;
+    load_all();
+    set_up_family(&bench, scene_family("instanced"), 1, 50);
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+        RtTally tallies[2][RT_RAY_KIND_COUNT] = {{{0}}};
+        for (int k = 0; k < 2; k++) {
+            OWNED_ACCEL RtAccel *accel = open_accel(&bench.scene, pairs[i][k]);
+            OWNED_QUERY query = open_query(accel);
+            for (size_t ray = 0; ray < bench.reference.count; ray++) {
+                RtHit hit;
+                bool blocked;
+                bench.rays[ray].kind = RT_RAY_SHADOW;
+                bench.rays[ray].source = 0;
+                if (i < 2) /* which of two objects in a leaf is tested first, the copy need not know */
+                    rt_nearest(&query, &bench.rays[ray], 1, &hit, tallies[k]);
+                else
+                    rt_occluded(&query, &bench.rays[ray], 1, &blocked, tallies[k]);
+            }
+            assert_ok(rt_accel_check(accel, error));
+        }
+        assert_memory_equal(tallies[0], tallies[1], sizeof tallies[0]);
+    }
+}
+
+RT_TEST(a_plugin_with_its_own_hit_functions_refuses_instances_and_no_plugin_is_of_parts_alone) {
+    load_all();
+    OWNED_SCENE scene = open_family(scene_family("instanced"), 1);
+    RtAccel *accel;
+    assert_bad_input(rt_accel_open("own-hits", &scene, &accel, error),
+                     "own-hits serves no scene with instances");
+    assert_bad_input(rt_accel_open("bvh/bvh_copy", &scene, &accel, error), "cannot stand after a '/'");
+}
+
 /* ---- overlays ---- */
 
 /* Whether the rays are blocked, and the counts, in streams of several kinds of rays. */
