@@ -26,7 +26,7 @@ RT_KERNEL bool rt_enter_begin(const RtGeometry *geometry, uint32_t id, const RtP
     if (!rt_instance_enter(instance, (const RtRay *)ray->ray, &entry->inside)) return false;
     if (best->t < entry->far) entry->inside.tmax = rt_minf(entry->inside.tmax, best->t);
     RT_COUNT(tally, instances_entered, 1);
-    RT_OBSERVE(tally, .kind = RT_TRACED_ENTERED, .index = id, .instance = instance, .inside = &entry->inside);
+    RT_OBSERVE(tally, .kind = RT_TRACED_ENTERED, .index = id);
     return true;
 }
 

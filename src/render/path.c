@@ -65,19 +65,22 @@ static RtStatus note_crossings(RtPath *path, const RtTraced *event, RtPathRow *r
     return RT_OK;
 }
 
-/* The row of its object test is the one before. */
-static RtStatus enter(Recorder *recorder, const RtTraced *event) {
+/* The row of its object test is the one before. A plugin's events may be anything. */
+static RtStatus enter(Recorder *recorder, uint32_t object) {
     RtPath *path = recorder->path;
     const RtPathPlace *outside = &path->places[recorder->place];
-    const RtInstance *instance = event->instance;
-    const RtPathPlace inside = {
-        .ray = *event->inside,
+    const RtGeometry *g = &outside->scene->geometry;
+    if (object >= g->object_count || !rt_is_instance(g, object) || path->count == 0) return RT_OK;
+    const RtInstance *instance = rt_instance_of(g, object);
+    RtPathPlace inside = {
         .scene = path->places[0].scene->parts[instance->part],
         .to_world = rt_transform_compose(&instance->to_world, &outside->to_world),
         .first = outside->first + instance->first,
+        .part = instance->part,
         .level = outside->level + 1,
         .test = path->count - 1,
     };
+    rt_instance_enter(instance, &outside->ray, &inside.ray);
     recorder->place = path->place_count;
     return rt_append(&path->places, &path->place_count, &path->place_capacity, &inside, sizeof inside,
                      recorder->error);
@@ -85,6 +88,7 @@ static RtStatus enter(Recorder *recorder, const RtTraced *event) {
 
 /* The row of the instance's test tells what was found in it. */
 static void leave(Recorder *recorder, const RtTraced *event) {
+    if (recorder->place == 0) return;
     RtPathRow *row = &recorder->path->rows[recorder->path->places[recorder->place].test];
     recorder->place = row->place;
     row->met = event->met;
@@ -107,7 +111,7 @@ static void record(void *context, const RtTraced *event) {
     switch (event->kind) {
     case RT_TRACED_OBJECT_HIT: note_hit(path, recorder->place, event); return;
     case RT_TRACED_LEFT: leave(recorder, event); return;
-    case RT_TRACED_ENTERED: recorder->status = enter(recorder, event); break;
+    case RT_TRACED_ENTERED: recorder->status = enter(recorder, event->index); break;
     default: break;
     }
     if (recorder->status != RT_OK) return;
@@ -129,7 +133,7 @@ static void record(void *context, const RtTraced *event) {
                        .boxed = event->box && !rt_box_is_empty(*event->box),
                        .enter = INFINITY,
                        .leave = -INFINITY};
-    if (event->instance) row->index = event->instance->part;
+    if (event->kind == RT_TRACED_ENTERED) row->index = path->places[row->place].part;
     snprintf(row->what, sizeof row->what, "%s", what_of(event, &path->places[row->place].scene->geometry));
     if (event->crossings) recorder->status = note_crossings(path, event, row, recorder->error);
     if (!event->box || !row->boxed) return;

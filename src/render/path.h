@@ -12,6 +12,7 @@ typedef struct RtPathPlace {
     RtRay ray;            /* moved into the part: t stays what it is */
     const RtScene *scene; /* the part; borrowed */
     RtTransform to_world;
+    uint32_t part;  /* its index in the scene */
     uint32_t first; /* the id in the whole scene of object 0 there */
     uint32_t level; /* instances around it; 0: the scene */
     uint32_t test;  /* the row of the instance's object test, outside */

@@ -22,8 +22,8 @@ typedef enum RtTracedKind {
     RT_TRACED_CSG_RESULT,     /* `crossings` with the result of an operation of that tree; not counted */
     RT_TRACED_REPEAT_AVOIDED, /* a mailbox skipped object `index` */
     RT_TRACED_PASSED_ON,      /* an overlay passes the ray to the accelerator below */
-    RT_TRACED_ENTERED,        /* `instance`, object `index`: the events up to LEFT are those of `inside` */
-    RT_TRACED_LEFT,           /* that instance; `met`, at `t`; not counted */
+    RT_TRACED_ENTERED,        /* instance `index` is entered: the next events, up to LEFT, are of its part */
+    RT_TRACED_LEFT,           /* and left, `met` at `t`; not counted */
     RT_TRACED_KIND_COUNT
 } RtTracedKind;
 
@@ -38,8 +38,6 @@ typedef struct RtTraced {
     const struct RtCrossing *crossings; /* of the ray's line (core/shape/solid.h), ascending, alternately in
                                          * and out; or NULL; valid during the call */
     uint32_t crossing_count;
-    const struct RtInstance *instance; /* core/shape/instance.h; or NULL */
-    const struct RtRay *inside;        /* the ray in its part; valid during the call */
     bool in_tree;     /* belongs to the test of the CSG tree whose event was the last without this mark */
     bool leaf, empty; /* of a step: counted in leaf_steps, in empty_steps */
     bool met;
