@@ -21,7 +21,30 @@
  * The ends of the ray's interval move by delta, too. The first certain crossing ends the object's margin.
  *
  * An accelerator may declare that it computes with absolute coordinates (RtAccel.absolute): then delta is
- * larger by 2^-21 of the largest coordinate of the scene's box and the ray's origin. */
+ * larger by 2^-21 of the largest coordinate of the scene's box and the ray's origin.
+ *
+ * Instances. An object in a part has its margin there, for the ray that the inverse of the matrix moves into
+ * the part. An accelerator may invert and move in float32, at each level, or move the part's points instead.
+ * With u = 2^-24, C the cofactors of the matrix M with sums in place of differences, and P its determinant
+ * with such sums, Cramer's rule errs by at most 4u in C, 8u P in the determinant and 3u in dividing: an
+ * element of the inverse by at most 15u of that of
+ *
+ *     W = C / |det M| * P / |det M|                (the inverse itself, without signs, for a scale)
+ *
+ * A point p of the ray, at most q, comes from there as M^-1 (p - at). Errors of the inverse move it by 15u W
+ * (q + |at|), the products and sums of moving by 4u of the origin's and 8u of the direction's part, for which
+ * t |dir| <= 2 q, and the subtraction by 5u of |at|: 27u in all. Rounding a moved point of a part with the
+ * largest coordinate r moves it by up to 4u W (|M| r + |at|). So a level adds
+ *
+ *     2^-19 W (q + |at| + |M| r)                                                        (32u; per axis)
+ *
+ * to what the levels outside moved the ray by, as the inverse moves that in its turn; delta is larger by the
+ * length of the sum. Ours round once a level, from doubles, and are far below it. A matrix that float32
+ * cannot invert makes W so large that nothing in the part is certain.
+ *
+ * Ours also clamp t to the interval of the instance's thick box. That contains the exact t of a hit, so t
+ * does not leave the piece of a certain crossing. The pieces of others are extended to the ends of the
+ * interval. */
 #ifndef RT_EXACT_MARGIN_H
 #define RT_EXACT_MARGIN_H
 
@@ -75,7 +98,14 @@ typedef struct RtMarginRay {
     RtWideRay wide;
     RtUnitLine line;
     double first, last; /* the interval as distances */
-    double extra; /* added to delta: the least float32 as a difference of t, and for absolute coordinates */
+    double extra; /* added to delta: the least float32 as a difference of t, for absolute coordinates, and by
+                   * how far the ray in a part may be off */
+    bool absolute;
+    /* In a part; outside 0, 1, and an empty interval. */
+    RtVec3d off;         /* by how far, along each axis */
+    double scale;        /* distances outside per distance here */
+    double enter, leave; /* t to which the pieces of uncertain crossings are extended */
+    bool unclear;        /* moved beyond the range of float32: anything may be hit anywhere */
 } RtMarginRay;
 
 /* For a valid ray. */
@@ -90,11 +120,17 @@ typedef struct RtMargin {
     bool edge_on;    /* as of RtFlatMargin */
 } RtMargin;
 
+/* delta of object `id`, as a distance along the ray. */
 double rt_margin_delta(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id);
 
 /* The margin of object `id`; `asked` is a distance along the ray, or NAN. RT_NO_MEMORY for a CSG tree alone.
  */
 RtStatus rt_margin_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id, double asked,
                       RtMargin *margin, RtError *error);
+
+/* Calls see(context, id, margin) for each object that is possible, in order of ids. */
+typedef void RtMarginVisitor(void *context, uint32_t id, const RtMargin *margin);
+RtStatus rt_margin_of_all(const RtMarginRay *ray, const RtGeometry *geometry, double asked,
+                          RtMarginVisitor *see, void *context, RtError *error);
 
 #endif
