@@ -45,14 +45,13 @@ static void add_rounding(const RtInstance *instance, const RtBox *box, const RtM
                          RtMarginRay *inside) {
     const double(*m)[4] = instance->to_world.m, (*inverse)[4] = instance->columns;
     const double part = (double)rt_box_largest_coordinate(instance->geometry->box);
-    double cofactors[3][3], permanent = 0, from[3];
+    double cofactors[3][3], from[3];
     for (int a = 0; a < 3; a++) {
         const int b = (a + 1) % 3, c = (a + 2) % 3;
         const double largest = fmax(fabs((double)box->lo.at[a]), fabs((double)box->hi.at[a]));
         for (int k = 0; k < 3; k++) { /* of column a, row k */
             const int u = (k + 1) % 3, v = (k + 2) % 3;
             cofactors[a][k] = fabs(m[u][b] * m[v][c]) + fabs(m[v][b] * m[u][c]);
-            if (a == 0) permanent += fabs(m[k][a]) * cofactors[a][k];
         }
         from[a] = fmax(largest, fabs(outside->wide.org.at[a])) + outside->off.at[a] + fabs(m[a][3]) +
                   part * (fabs(m[a][0]) + fabs(m[a][1]) + fabs(m[a][2]));
@@ -63,10 +62,9 @@ static void add_rounding(const RtInstance *instance, const RtBox *box, const RtM
     const double determinant = fabs(rt_dotd(x, rt_crossd(y, z)));
     for (int a = 0; a < 3; a++) {
         double off = 0x1p-140;
-        for (int k = 0; k < 3; k++) {
-            const double w = cofactors[a][k] / determinant * (permanent / determinant);
-            off += 2 * RT_MARGIN * w * from[k] + fabs(inverse[k][a]) * outside->off.at[k];
-        }
+        for (int k = 0; k < 3; k++)
+            off += 2 * RT_MARGIN * cofactors[a][k] / determinant * from[k] +
+                   fabs(inverse[k][a]) * outside->off.at[k];
         inside->off.at[a] = off;
     }
 }

@@ -25,22 +25,18 @@
  *
  * Instances. An object in a part has its margin there, for the ray that the inverse of the matrix moves into
  * the part. An accelerator may invert and move in float32, at each level, or move the part's points instead.
- * With u = 2^-24, C the cofactors of the matrix M with sums in place of differences, and P its determinant
- * with such sums, Cramer's rule errs by at most 4u in C, 8u P in the determinant and 3u in dividing: an
- * element of the inverse by at most 15u of that of
+ * With u = 2^-24, C the cofactors of the matrix M with sums in place of differences, and W = C / |det M|,
+ * Cramer's rule moves a point p of the ray, at most q, as follows. Cofactors err by 4u C, and the division by
+ * 3u: 7u W (q + |at|). The determinant errs by 8u of its products without signs, which scales the part: 8u W
+ * |M| r, if r is the largest coordinate of the part. The products and sums of moving add 4u of the origin's,
+ * 8u of the direction's (t |dir| <= 2 q) and 5u of |at|'s part. A moved point of the part errs by 4u W (|M| r
+ * + |at|), and is rounded there by u q. So a level adds at most, along each axis,
  *
- *     W = C / |det M| * P / |det M|                (the inverse itself, without signs, for a scale)
+ *     2^-19 W (q + |at| + |M| r)                                                                       (32u)
  *
- * A point p of the ray, at most q, comes from there as M^-1 (p - at). Errors of the inverse move it by 15u W
- * (q + |at|), the products and sums of moving by 4u of the origin's and 8u of the direction's part, for which
- * t |dir| <= 2 q, and the subtraction by 5u of |at|: 27u in all. Rounding a moved point of a part with the
- * largest coordinate r moves it by up to 4u W (|M| r + |at|). So a level adds
- *
- *     2^-19 W (q + |at| + |M| r)                                                        (32u; per axis)
- *
- * to what the levels outside moved the ray by, as the inverse moves that in its turn; delta is larger by the
- * length of the sum. Ours round once a level, from doubles, and are far below it. A matrix that float32
- * cannot invert makes W so large that nothing in the part is certain.
+ * to what the levels outside are off by, as the inverse moves that; delta is larger by the length of the sum.
+ * Ours round once a level, from doubles, and are far below it. A matrix that float32 cannot invert makes W so
+ * large that nothing in the part is certain.
  *
  * Ours also clamp t to the interval of the instance's thick box. That contains the exact t of a hit, so t
  * does not leave the piece of a certain crossing. The pieces of others are extended to the ends of the

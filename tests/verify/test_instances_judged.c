@@ -322,6 +322,15 @@ RT_TEST(a_structure_that_never_hits_is_wrong_about_what_instances_contain) {
     }
 }
 
+RT_TEST(a_ray_that_leaves_the_numbers_of_a_part_may_hit_and_may_miss) {
+    OWNED_SCENE scene = one_ball(scaled(1e-6, 1e-6, 1e-6));
+    const RtRay ray = ray_along(rt_vec3(0, 0, 6e11f), down);
+    const RtExactAnswer exact = rt_referee_nearest(&scene.geometry, &ray);
+    assert_int_equal(exact.object, 0);
+    assert_false(is_wrong(&scene.geometry, &ray, RT_MISS)); /* brute's */
+    assert_false(is_wrong(&scene.geometry, &ray, (RtHit){(float)exact.t, 0}));
+}
+
 /* A ray passes beside a ball, by less than it is moved by rounding far from the zero of the part, and is in
  * the box of the instance only much later, because of another ball there. */
 RT_TEST(a_hit_that_is_clamped_to_far_behind_its_object_is_not_wrong) {
