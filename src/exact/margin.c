@@ -45,25 +45,23 @@ static void add_rounding(const RtInstance *instance, const RtBox *box, const RtM
                          RtMarginRay *inside) {
     const double(*m)[4] = instance->to_world.m, (*inverse)[4] = instance->columns;
     const double part = (double)rt_box_largest_coordinate(instance->geometry->box);
-    double cofactors[3][3], from[3];
+    double cofactors[3][3], from[3], determinant = 0;
     for (int a = 0; a < 3; a++) {
         const int b = (a + 1) % 3, c = (a + 2) % 3;
-        const double largest = fmax(fabs((double)box->lo.at[a]), fabs((double)box->hi.at[a]));
         for (int k = 0; k < 3; k++) { /* of column a, row k */
             const int u = (k + 1) % 3, v = (k + 2) % 3;
-            cofactors[a][k] = fabs(m[u][b] * m[v][c]) + fabs(m[v][b] * m[u][c]);
+            const double one = m[u][b] * m[v][c], other = m[v][b] * m[u][c];
+            cofactors[a][k] = fabs(one) + fabs(other);
+            if (a == 0) determinant += m[k][0] * (one - other);
         }
-        from[a] = fmax(largest, fabs(outside->wide.org.at[a])) + outside->off.at[a] + fabs(m[a][3]) +
+        const double box_most = fmax(fabs((double)box->lo.at[a]), fabs((double)box->hi.at[a]));
+        from[a] = fmax(box_most, fabs(outside->wide.org.at[a])) + outside->off.at[a] + fabs(m[a][3]) +
                   part * (fabs(m[a][0]) + fabs(m[a][1]) + fabs(m[a][2]));
     }
-    const RtVec3d x = rt_transform_column(&instance->to_world, 0),
-                  y = rt_transform_column(&instance->to_world, 1),
-                  z = rt_transform_column(&instance->to_world, 2);
-    const double determinant = fabs(rt_dotd(x, rt_crossd(y, z)));
     for (int a = 0; a < 3; a++) {
         double off = 0x1p-140;
         for (int k = 0; k < 3; k++)
-            off += 2 * RT_MARGIN * cofactors[a][k] / determinant * from[k] +
+            off += 2 * RT_MARGIN * cofactors[a][k] / fabs(determinant) * from[k] +
                    fabs(inverse[k][a]) * outside->off.at[k];
         inside->off.at[a] = off;
     }
@@ -72,9 +70,7 @@ static void add_rounding(const RtInstance *instance, const RtBox *box, const RtM
 /* Where t may be clamped: from the beginning of the thick box to that of a box that is surely inside it. */
 static void add_clamps(const RtBox *box, const RtMarginRay *outside, RtMarginRay *inside) {
     const RtUnitLine *line = &outside->line;
-    const RtVec3d org = line->org;
-    const double largest = fmax(fabs(org.x), fmax(fabs(org.y), fabs(org.z)));
-    const double grown = RT_MARGIN * (2 * rt_far_corner(line, box) + largest) + outside->extra;
+    const double grown = RT_MARGIN * (2 * rt_far_corner(line, box) + rt_lengthd(line->org)) + outside->extra;
     double lo, hi, near, far;
     if (!rt_line_in_box(line, box, grown, &lo, &hi)) return;
     if (!rt_line_in_box(line, box, -grown, &near, &far)) near = hi, far = lo;
@@ -107,13 +103,6 @@ static RtMarginRay enter(const RtMarginRay *outside, const RtGeometry *geometry,
         largest > (double)RT_MAX_COORDINATE / 2 || rt_exceeds_float(inside.line.length, inside.line.length) ||
         rt_exceeds_float(fmin(far, length) * fmin(far, length), fmax(far, length) * fmax(far, length));
     return inside;
-}
-
-/* May anything in the geometry be met? */
-static bool may_meet(const RtMarginRay *ray, const RtGeometry *geometry) {
-    double lo, hi;
-    const double delta = RT_MARGIN * rt_far_corner(&ray->line, &geometry->box) + ray->extra;
-    return ray->unclear || rt_line_in_box(&ray->line, &geometry->box, delta, &lo, &hi);
 }
 
 /* Follows an id into instances: the geometry and object that it names, and the ray there. */
@@ -358,12 +347,9 @@ static RtStatus object_margin(const RtMarginRay *ray, const RtGeometry *geometry
 /* In distances along the ray outside. */
 static RtStatus margin_outside(const RtMarginRay *here, const RtGeometry *geometry, uint32_t object,
                                double asked, RtMargin *m, RtError *error) {
-    const double scale = here->scale;
-    RT_TRY(object_margin(here, geometry, object, asked / scale, m, error));
-    m->earliest *= scale;
-    m->latest *= scale;
-    m->lo *= scale;
-    m->hi *= scale;
+    double *const distances[] = {&m->earliest, &m->latest, &m->lo, &m->hi};
+    RT_TRY(object_margin(here, geometry, object, asked / here->scale, m, error));
+    for (int i = 0; i < 4; i++) *distances[i] *= here->scale;
     return RT_OK;
 }
 
@@ -386,7 +372,9 @@ static RtStatus visit(const Visit *v, const RtMarginRay *ray, const RtGeometry *
         if (rt_is_instance(geometry, object)) {
             const RtInstance *instance = rt_instance_of(geometry, object);
             const RtMarginRay inside = enter(ray, geometry, object);
-            if (may_meet(&inside, instance->geometry))
+            const RtBox *box = &instance->geometry->box;
+            double lo, hi, delta = RT_MARGIN * rt_far_corner(&inside.line, box) + inside.extra;
+            if (inside.unclear || rt_line_in_box(&inside.line, box, delta, &lo, &hi))
                 RT_TRY(visit(v, &inside, instance->geometry, first + instance->first, error));
             continue;
         }

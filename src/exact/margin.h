@@ -25,18 +25,17 @@
  *
  * Instances. An object in a part has its margin there, for the ray that the inverse of the matrix moves into
  * the part. An accelerator may invert and move in float32, at each level, or move the part's points instead.
- * With u = 2^-24, C the cofactors of the matrix M with sums in place of differences, and W = C / |det M|,
- * Cramer's rule moves a point p of the ray, at most q, as follows. Cofactors err by 4u C, and the division by
- * 3u: 7u W (q + |at|). The determinant errs by 8u of its products without signs, which scales the part: 8u W
- * |M| r, if r is the largest coordinate of the part. The products and sums of moving add 4u of the origin's,
- * 8u of the direction's (t |dir| <= 2 q) and 5u of |at|'s part. A moved point of the part errs by 4u W (|M| r
- * + |at|), and is rounded there by u q. So a level adds at most, along each axis,
+ * With u = 2^-24, C the cofactors of the matrix M with sums in place of differences, W = C / |det M|, and r
+ * the largest coordinate of the part, Cramer's rule moves a point p of the ray, at most q, as follows.
+ * Cofactors err by 4u C, and the division by 3u: 7u W (q + |at|). The determinant errs by 8u of its products
+ * without signs, which scales the part: 8u W |M| r. Moving adds 4u of the origin's, 8u of the direction's (t
+ * |dir| <= 2 q) and 5u of |at|'s part. A moved point of the part errs by 4u W (|M| r + |at|), and its
+ * rounding by u q. That is less than
  *
- *     2^-19 W (q + |at| + |M| r)                                                                       (32u)
+ *     2^-19 W (q + |at| + |M| r)                                                           (32u, per axis)
  *
- * to what the levels outside are off by, as the inverse moves that; delta is larger by the length of the sum.
- * Ours round once a level, from doubles, and are far below it. A matrix that float32 cannot invert makes W so
- * large that nothing in the part is certain.
+ * and the inverse moves what the levels outside are off by; delta is larger by the length of the sum. Ours
+ * round once a level, from doubles, and are far below it. Where float32 cannot invert, nothing is certain.
  *
  * Ours also clamp t to the interval of the instance's thick box. That contains the exact t of a hit, so t
  * does not leave the piece of a certain crossing. The pieces of others are extended to the ends of the
@@ -94,14 +93,13 @@ typedef struct RtMarginRay {
     RtWideRay wide;
     RtUnitLine line;
     double first, last; /* the interval as distances */
-    double extra; /* added to delta: the least float32 as a difference of t, for absolute coordinates, and by
-                   * how far the ray in a part may be off */
+    double
+        extra; /* added to delta: the least float32 as a difference of t; for absolute coordinates; |off| */
     bool absolute;
-    /* In a part; outside 0, 1, and an empty interval. */
-    RtVec3d off;         /* by how far, along each axis */
+    RtVec3d off;         /* by how far the ray may be off in a part */
     double scale;        /* distances outside per distance here */
-    double enter, leave; /* t to which the pieces of uncertain crossings are extended */
-    bool unclear;        /* moved beyond the range of float32: anything may be hit anywhere */
+    double enter, leave; /* t to which the pieces of uncertain crossings are extended in a part */
+    bool unclear;        /* moved beyond the range of float32: anything there may be hit anywhere */
 } RtMarginRay;
 
 /* For a valid ray. */

@@ -43,16 +43,13 @@ static void consider(Search *s, const RtGeometry *g, uint32_t object, const RtEx
         (RtExactAnswer){.result = RT_HIT, .object = id, .tied = 1, .t = rt_root_value(&t, line->zero)};
 }
 
-/* The box of an object; that of an instance, which is rounded double, with what its part's corners may be
- * off. */
+/* The box of an object; that of an instance with what double rounds its corners by. */
 static RtBox whole_box(const RtGeometry *g, uint32_t object) {
     RtBox box = g->boxes[object];
-    if (!rt_is_instance(g, object)) return box;
-    const RtInstance *instance = rt_instance_of(g, object);
-    const double most = (double)rt_box_largest_coordinate(instance->geometry->box);
-    for (int a = 0; a < 3; a++) {
-        const double *m = instance->to_world.m[a];
-        const double off = 0x1p-50 * ((fabs(m[0]) + fabs(m[1]) + fabs(m[2])) * most + fabs(m[3]));
+    for (int a = 0; a < 3 && rt_is_instance(g, object); a++) {
+        const double *m = rt_instance_of(g, object)->to_world.m[a];
+        const double part = (double)rt_box_largest_coordinate(rt_instance_of(g, object)->geometry->box);
+        const double off = 0x1p-50 * ((fabs(m[0]) + fabs(m[1]) + fabs(m[2])) * part + fabs(m[3]));
         box.lo.at[a] = rt_float_below((double)box.lo.at[a] - off);
         box.hi.at[a] = rt_float_above((double)box.hi.at[a] + off);
     }

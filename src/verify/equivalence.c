@@ -159,19 +159,11 @@ static RtStatus count_chunk(void *context, size_t chunk, int thread, RtError *er
     return RT_OK;
 }
 
-/* Of a CSG tree. */
-static uint64_t solids_of(const RtGeometry *g) {
-    return g->csg_count > 0 ? g->forest.set.solid_count / g->csg_count : 0;
-}
-
 RtStatus rt_reference_certain(const RtReference *reference, bool absolute, int threads, RtCertain *out,
                               RtError *error) {
     const RtGeometry *g = &reference->scene->geometry;
-    uint64_t solids = solids_of(g);
-    for (uint32_t i = 0; i < reference->scene->part_count; i++) {
-        const uint64_t in_part = solids_of(&reference->scene->parts[i]->geometry);
-        if (in_part > solids) solids = in_part;
-    }
+    uint64_t solids = g->csg_count > 0 ? g->forest.set.solid_count / g->csg_count : 0;
+    if (g->part_crossings > solids) solids = g->part_crossings;
     uint64_t most = CERTAIN_WORK / (rt_geometry_id_count(g) + WORK_PER_SOLID * solids + 1);
     if (most < FEWEST_SAMPLED) most = FEWEST_SAMPLED;
     CertainJob job = {.reference = reference, .absolute = absolute, .stride = reference->count / most + 1};
