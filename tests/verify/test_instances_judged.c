@@ -7,6 +7,7 @@
 #include "random_testing.h"
 
 #include "core/base/random.h"
+#include "verify/failure.h"
 #include "verify/verdict.h"
 
 #include <inttypes.h>
@@ -350,6 +351,25 @@ RT_TEST(a_hit_that_is_clamped_to_far_behind_its_object_is_not_wrong) {
     assert_true(hit.t > 20);
     assert_int_equal(rt_referee_nearest(&scene.geometry, &ray).result, RT_MISSED);
     assert_false(is_wrong(&scene.geometry, &ray, hit));
+}
+
+RT_TEST(the_objects_near_a_wrong_ray_are_copied_from_instances) {
+    OWNED_SCENE scene = begin_balls();
+    const char *path = RT_BINARY_DIR "/test_near_instances.yaml";
+    for (int i = 0; i < 9; i++) place(&scene, &scene, 0, moved(i < 2 ? 0 : 9, 0, 3 * i));
+    assert_ok(rt_scene_finish(&scene, error));
+    const RtWrongAnswer wrong = {.ray = ray_along(rt_vec3(0, 0, 9), down), .expected = {5, 1}, .got = {3, 4}};
+    uint32_t count;
+    assert_ok(rt_near_save(&scene, &wrong, path, &count, error));
+    assert_int_equal(count, 3);
+    OWNED_SCENE near = open_scene(path);
+    assert_int_equal(near.geometry.sphere_count, 3);
+    assert_true(near.geometry.spheres[1].center.z == 3 && near.geometry.spheres[2].center.z == 12);
+    unlink(path);
+    OWNED_SCENE other = one_ball(scaled(1, 1, 2)); /* no copy of a ball */
+    assert_ok(rt_near_save(&other, &wrong, path, &count, error));
+    assert_int_equal(count, 0);
+    assert_int_not_equal(access(path, F_OK), 0);
 }
 
 RT_TEST(answers_across_a_border_in_an_instance_at_four_times_delta_are_wrong) {
