@@ -37,7 +37,7 @@ RT_KERNEL bool rt_enter_end(const RtInstance *instance, const RtEntry *entry, Rt
     if (hit.object == RT_NO_OBJECT) return false;
     if (any || hit.t < entry->near) hit.t = entry->near;
     if (hit.t > entry->far) hit.t = entry->far;
-    hit.object += instance->first;
+    if (hit.object != RT_UNNAMED_OBJECT) hit.object += instance->first;
     if (rt_hit_before(hit.t, hit.object, *best)) *best = hit;
     return any;
 }

@@ -74,6 +74,11 @@ static const char *const specs[] = {
     "cache+wide:in_flight=64,packets=0/wide:in_flight=64,packets=0",
     "brute/extents:kind=slabs",
     "ideal/wide",
+#ifdef RT_WITH_EMBREE
+    "embree:mode=user",
+    "embree:mode=user,query=16/grid",
+    "wide/embree:mode=user,query=8",
+#endif
 };
 
 /* Brute answers as the definition says, and all others as brute. */
