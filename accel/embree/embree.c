@@ -240,11 +240,11 @@ RT_KERNEL void put_ray(Batch *batch, unsigned lanes, size_t i, const RtRay *ray,
 
 /* ---- tracing ---- */
 
-/* Primary and shadow rays come in tiles, so neighbours are coherent. Except in packets of 16 through
- * instances: Debian's Embree 3.13 for AVX-512, as gcc compiled its search for occluders of coherent ones,
- * reads 64 bits of a mask of 16, and may never end. */
+/* Primary and shadow rays come in tiles, so neighbours are coherent. For occluders in instances, only packets
+ * of 8 say so: of coherent packets of 16, into which it also cuts coherent streams, Debian's Embree 3.13 for
+ * AVX-512 reads 64 bits of a mask of 16 there, by a fault of gcc's, and may never end. */
 RT_KERNEL bool is_coherent(const RtEmbree *self, const RtRay *ray, bool any, unsigned lanes) {
-    if (any && lanes == 16 && self->base.scene->geometry.instance_count > 0) return false;
+    if (any && lanes != 8 && self->base.scene->geometry.instance_count > 0) return false;
     return ray->kind == RT_RAY_PRIMARY || ray->kind == RT_RAY_SHADOW;
 }
 

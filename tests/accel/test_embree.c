@@ -293,7 +293,7 @@ static void fill_chords(RtRay *rays, size_t count) {
                 ends[k].at[a] = (rt_random_unit(&random) - 0.5f) * (a == 0 ? 36 : k == 0 ? 30 : 8);
         }
         rays[i] = ray_along(ends[0], rt_sub(ends[1], ends[0]));
-        rays[i].kind = i / 16 % 2 ? RT_RAY_SHADOW : RT_RAY_RANDOM;
+        rays[i].kind = i / 256 % 2 ? RT_RAY_SHADOW : RT_RAY_RANDOM;
     }
 }
 
