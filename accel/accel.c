@@ -13,9 +13,8 @@ uint64_t rt_accel_byte_limit(const RtScene *scene) {
 }
 
 static void destroy_layer(RtAccel *accel) {
-    for (uint32_t i = 0; accel->parts && i < accel->scene->part_count; i++) rt_accel_destroy(accel->parts[i]);
-    rt_free(accel->parts);
     if (accel->ops->destroy) accel->ops->destroy(accel);
+    rt_accel_destroy_parts(accel->parts, accel->scene);
     rt_arena_clear(&accel->memory);
     rt_free(accel);
 }
@@ -44,6 +43,11 @@ RtStatus rt_accel_build_layer(const RtAccelOps *ops, const RtBuild *what, RtAcce
     else
         destroy_layer(accel);
     return status;
+}
+
+void rt_accel_destroy_parts(RtAccel **parts, const RtScene *scene) {
+    for (uint32_t i = 0; parts && i < scene->part_count; i++) rt_accel_destroy(parts[i]);
+    rt_free(parts);
 }
 
 bool rt_accel_refuses(RtStatus status) {

@@ -152,6 +152,8 @@ typedef struct RtBuild {
     const RtValue *values; /* [param_count], in range */
     int threads;           /* 0 = all processors; does not change the structure */
     uint64_t limit;        /* a structure of more bytes, as its `build` estimates them, is refused */
+    RtAccel **parts; /* of a scene's parts, which are built before it, in order: NULL from the one that is
+                        built on; NULL if there are no parts */
 } RtBuild;
 
 /* Parameters of several accelerators. */
@@ -337,6 +339,7 @@ RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, R
 RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
 RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error);
 void rt_accel_destroy(RtAccel *accel); /* and the layers below; NULL is allowed */
+void rt_accel_destroy_parts(RtAccel **parts, const RtScene *scene); /* and the array; NULL is allowed */
 
 /* For RT_OWNED(RtAccel *, ...). */
 static inline void rt_accel_destroy_at(RtAccel **accel) {

@@ -137,39 +137,54 @@ void rt_spec_format(const RtSpec *spec, char *out) {
 
 /* ---- building ---- */
 
-/* Builds what answers rays in the parts of a scene, for the base of a stack. */
-static RtStatus build_parts(const RtSpec *spec, int threads, RtAccel *base, RtError *error) {
-    const RtScene *scene = base->scene;
+/* Builds what answers rays in the parts of a scene; also after a failure, *out holds those that were built.
+ */
+static RtStatus build_parts(const RtSpec *spec, const RtScene *scene, int threads, RtAccel ***out,
+                            RtError *error) {
     const RtSpecLayer *layer = spec->of_parts ? &spec->part : &spec->layers[spec->layer_count - 1];
     if (scene->part_count == 0) return RT_OK;
-    base->parts = rt_alloc(scene->part_count, sizeof(void *));
-    if (!base->parts) return rt_fail_memory(error, "parts", scene->part_count * sizeof(void *));
+    RtAccel **parts = *out = rt_alloc(scene->part_count, sizeof(void *));
+    if (!parts) return rt_fail_memory(error, "parts", scene->part_count * sizeof(void *));
     for (uint32_t i = 0; i < scene->part_count; i++) {
         const RtScene *part = scene->parts[i];
-        const RtBuild what = {part, layer->values, threads, rt_accel_byte_limit(part)};
-        RT_TRY(rt_accel_build_layer(layer->ops, &what, NULL, &base->parts[i], error));
+        const RtBuild what = {part, layer->values, threads, rt_accel_byte_limit(part), parts};
+        RT_TRY(rt_accel_build_layer(layer->ops, &what, NULL, &parts[i], error));
     }
     return RT_OK;
 }
 
+/* Gives the parts to the base of a stack, whose answers are no better than theirs. */
+static void take_parts(RtAccel *base, RtAccel **parts) {
+    base->parts = parts;
+    for (uint32_t i = 0; i < base->scene->part_count; i++) {
+        base->exact &= parts[i]->exact;
+        base->absolute |= parts[i]->absolute;
+        base->counts &= parts[i]->counts;
+    }
+}
+
 static RtStatus build_layers(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
                              RtError *error) {
-    RtAccel *top = NULL;
+    RtAccel *top = NULL, **parts = NULL;
     double start = rt_wall_seconds();
     *out = NULL;
     RT_TRY(rt_spec_available(spec, error));
-    for (uint32_t i = spec->layer_count; i-- > 0;) {
-        const RtBuild what = {scene, spec->layers[i].values, threads, rt_accel_byte_limit(scene)};
-        RtStatus status = rt_accel_build_layer(spec->layers[i].ops, &what, top, &top, error);
-        if (status == RT_OK && !top->below) status = build_parts(spec, threads, top, error);
-        if (status != RT_OK) {
-            rt_accel_destroy(top);
-            return status;
-        }
+    RtStatus status = build_parts(spec, scene, threads, &parts, error);
+    for (uint32_t i = spec->layer_count; status == RT_OK && i-- > 0;) {
+        const RtBuild what = {scene, spec->layers[i].values, threads, rt_accel_byte_limit(scene), parts};
+        status = rt_accel_build_layer(spec->layers[i].ops, &what, top, &top, error);
+        if (status != RT_OK) break;
+        if (!top->below) take_parts(top, parts);
         top->build_seconds = rt_wall_seconds() - start;
     }
-    *out = top;
-    return RT_OK;
+    if (status == RT_OK) {
+        *out = top;
+    } else if (top) {
+        rt_accel_destroy(top);
+    } else {
+        rt_accel_destroy_parts(parts, scene);
+    }
+    return status;
 }
 
 RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,

@@ -91,7 +91,7 @@ static inline RtStatus build_within(const char *name, uint64_t limit, const RtSc
                                     const RtValue *values, RtAccel **out, RtError *problem) {
     const RtAccelOps *ops;
     assert_ok(rt_accel_find(name, &ops, error));
-    return rt_accel_build_layer(ops, &(RtBuild){scene, values, 1, limit}, NULL, out, problem);
+    return rt_accel_build_layer(ops, &(RtBuild){scene, values, 1, limit, NULL}, NULL, out, problem);
 }
 
 /* Asserts that such a build is refused and leaves nothing behind. Returns the bytes that it would take;

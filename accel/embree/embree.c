@@ -7,6 +7,8 @@
  *                proves it), independent of our structures. Its time is that of the callbacks; never quote
  *                it as Embree's.
  *
+ * Instances are Embree's own in native mode if the accelerator of their parts is native, too.
+ *
  * Paper: Wald, Woop, Benthin, Johnson & Ernst 2014, "Embree: A Kernel Framework for Efficient CPU Ray
  * Tracing", ACM TOG 33(4). Object tests are counted in user mode only. Embree exposes no extent tests, steps
  * or structure, so these are reported as 0.
@@ -154,6 +156,7 @@ typedef struct Trace {
     RTCOccludedFunctionN occluded;
     Search *searches;        /* by ray id */
     RtHitMemory *hit_memory; /* of hit functions */
+    unsigned denormals;      /* of native mode: how they were before */
 } Trace;
 
 typedef struct Batch {
@@ -237,8 +240,11 @@ RT_KERNEL void put_ray(Batch *batch, unsigned lanes, size_t i, const RtRay *ray,
 
 /* ---- tracing ---- */
 
-/* Primary and shadow rays come in tiles, so neighbours are coherent. */
-RT_KERNEL bool is_coherent(const RtRay *ray) {
+/* Primary and shadow rays come in tiles, so neighbours are coherent. For occluders in instances, only packets
+ * of 8 say so: of coherent packets of 16, into which it also cuts coherent streams, Debian's Embree 3.13 for
+ * AVX-512 reads 64 bits of a mask of 16 there, by a fault of gcc's, and may never end. */
+RT_KERNEL bool is_coherent(const RtEmbree *self, const RtRay *ray, bool any, unsigned lanes) {
+    if (any && lanes != 8 && self->base.scene->geometry.instance_count > 0) return false;
     return ray->kind == RT_RAY_PRIMARY || ray->kind == RT_RAY_SHADOW;
 }
 
@@ -273,7 +279,7 @@ RT_KERNEL void search_lanes(const RtEmbreeSlot *slot, const void *context, uint3
             rt_test_object(geometry, id, &search->ray, any, &search->best, counted ? search->tally : NULL);
         if (over)
             *tfar = -INFINITY;
-        else if (search->best.object == id)
+        else if (search->best.object != RT_NO_OBJECT) /* perhaps one in the instance `id` */
             *tfar = rt_embree_limit(search->best.t, search->shrink);
     }
 }
@@ -293,9 +299,11 @@ DEFINE_SEARCHES(counted, true)
 
 /* ---- native mode: Embree's rays, for shapes that Embree lacks ---- */
 
-static bool lane_hit(const RtGeometry *geometry, uint32_t id, const void *context, Word *rays, unsigned lanes,
-                     unsigned i, float *t) {
-    const Trace *trace = context;
+/* hit->object is the primitive id of the hit: for an instance, the id of the object. */
+static bool lane_hit(const RtEmbreeSlot *slot, uint32_t primitive, const Trace *trace, Word *rays,
+                     unsigned lanes, unsigned i, bool any, RtHit *hit) {
+    const RtGeometry *geometry = &slot->self->base.scene->geometry;
+    const uint32_t id = slot->ids[primitive];
     RtRay ray = {.tmin = word_at(rays, lanes, FIELD_TNEAR, i)->f,
                  .tmax = word_at(rays, lanes, FIELD_TFAR, i)->f};
     for (unsigned a = 0; a < 3; a++) {
@@ -304,7 +312,13 @@ static bool lane_hit(const RtGeometry *geometry, uint32_t id, const void *contex
     }
     RtPreparedRay prepared;
     rt_hit_ray(&prepared, geometry, &ray, trace->hit_memory);
-    return rt_object_hit(geometry, id, &prepared, t, NULL);
+    *hit = (RtHit){INFINITY, primitive};
+    if (!rt_is_instance(geometry, id)) return rt_object_hit(geometry, id, &prepared, &hit->t, NULL);
+    *hit = RT_MISS;
+    restore_denormals(trace->denormals); /* for the accelerator of the part */
+    rt_test_object(geometry, id, &prepared, any, hit, NULL);
+    denormals_off();
+    return hit->object != RT_NO_OBJECT;
 }
 
 /* Sets tfar of the lanes that hit: to t, or with `any` to -inf. Without `any`, `instance` is also written as
@@ -313,14 +327,12 @@ RT_KERNEL void test_lanes(const RtEmbreeSlot *slot, const void *context, uint32_
                           uint32_t primitive, const int *valid, Word *rays, unsigned lanes, bool any,
                           uint32_t instance) {
     for (unsigned i = 0; i < lanes; i++) {
-        float t;
-        if (!valid[i]) continue;
-        if (!lane_hit(&slot->self->base.scene->geometry, slot->ids[primitive], context, rays, lanes, i, &t))
-            continue;
-        word_at(rays, lanes, FIELD_TFAR, i)->f = any ? -INFINITY : t;
+        RtHit hit;
+        if (!valid[i] || !lane_hit(slot, primitive, context, rays, lanes, i, any, &hit)) continue;
+        word_at(rays, lanes, FIELD_TFAR, i)->f = any ? -INFINITY : hit.t;
         if (any) continue;
         for (unsigned field = FIELD_NG; field <= FIELD_V; field++) word_at(rays, lanes, field, i)->f = 0;
-        word_at(rays, lanes, FIELD_PRIMITIVE, i)->u = primitive;
+        word_at(rays, lanes, FIELD_PRIMITIVE, i)->u = hit.object;
         word_at(rays, lanes, FIELD_GEOMETRY, i)->u = geometry;
         word_at(rays, lanes, FIELD_INSTANCE, i)->u = instance;
     }
@@ -394,7 +406,7 @@ RT_KERNEL void answer_user(const RtEmbree *self, const RtScratch *scratch, const
             RtTally *tally = tallies ? &tallies[ray[i].kind] : NULL;
             put_search(self, batch, lanes, i, &ray[i], scratch->hit_memory, any, tally);
         }
-        bool coherent = is_coherent(ray);
+        bool coherent = is_coherent(self, ray, any, lanes);
         Trace trace = begin_trace(self, scratch, coherent, tallies != NULL);
         trace_batch(self, batch, &trace.context, coherent, n, any, lanes, stream);
         for (size_t i = 0; i < n; i++)
@@ -491,9 +503,15 @@ RT_KERNEL RtHit take_hit(const RtEmbree *self, Batch *batch, unsigned lanes, siz
     if (geometry == RTC_INVALID_GEOMETRY_ID) return RT_MISS;
     float t = (float)((double)at_lane(batch, lanes, i, FIELD_TFAR)->f * stretch);
     if (!(t <= FLT_MAX)) return RT_MISS;
+    uint32_t primitive = at_lane(batch, lanes, i, FIELD_PRIMITIVE)->u, first = 0;
+    uint32_t instance = at_lane(batch, lanes, i, FIELD_INSTANCE)->u;
+    if (instance != RTC_INVALID_GEOMETRY_ID) {
+        const RtInstance *in = &self->base.scene->geometry.instances[instance - RT_SHAPE_INSTANCE];
+        first = in->first;
+        self = (const RtEmbree *)self->parts[in->part];
+    }
     const RtEmbreeSlot *slot = &self->slots[geometry];
-    uint32_t primitive = at_lane(batch, lanes, i, FIELD_PRIMITIVE)->u;
-    return (RtHit){t, slot->consecutive ? slot->first + primitive : slot->ids[primitive]};
+    return (RtHit){t, first + (slot->consecutive ? slot->first + primitive : slot->ids[primitive])};
 }
 
 static __attribute__((noinline)) void take_any(const RtEmbree *self, Batch *batch, unsigned lanes,
@@ -514,7 +532,7 @@ RT_KERNEL void answer_chunk(const RtEmbree *self, Batch *batch, Context *context
     bool ordinary = put_chunk(batch, lanes, rays, count, denormals);
     for (size_t i = 0; !any && i < count; i++)
         at_lane(batch, lanes, i, FIELD_GEOMETRY)->u = RTC_INVALID_GEOMETRY_ID;
-    trace_batch(self, batch, context, is_coherent(rays), count, any, lanes, stream);
+    trace_batch(self, batch, context, is_coherent(self, rays, any, lanes), count, any, lanes, stream);
     if (any) {
         for (size_t i = 0; i < count; i++) {
             bool blocked = at_lane(batch, lanes, i, FIELD_TFAR)->f < 0;
@@ -534,9 +552,9 @@ RT_KERNEL void answer_native(const RtEmbree *self, const RtScratch *scratch, con
     const size_t chunk = stream ? STREAM_RAYS : PACKET_RAYS;
     Batch *batch = scratch->own;
     if (count == 0) return;
-    Trace trace = begin_trace(self, scratch, is_coherent(rays), false);
+    Trace trace = begin_trace(self, scratch, is_coherent(self, rays, !hits, lanes), false);
     for (size_t i = 0; i < chunk && i < count; i++) put_constants(batch, lanes, i);
-    unsigned denormals = denormals_off();
+    unsigned denormals = trace.denormals = denormals_off();
     for (size_t begin = 0; begin < count; begin += chunk) {
         size_t left = count - begin, n = left < chunk ? left : chunk;
         prefetch_rays(rays + begin + n, left - n < chunk ? left - n : chunk);

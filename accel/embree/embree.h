@@ -4,6 +4,10 @@
  * Each shape that has objects is one Embree geometry. The geometry id is the RtShape; primitive ids are
  * indices in that shape's array; `slots` maps them to object ids.
  *
+ * In native mode over native parts, instance i is an Embree geometry of its own, with id RT_SHAPE_INSTANCE +
+ * i. Otherwise instances are one user geometry, whose callback asks the accelerators of parts. In native mode
+ * the primitive id of a hit there is the object's.
+ *
  * Why user mode is exact. Embree only proposes candidates, and our hit functions decide; so Embree must
  * propose every object that brute finds. Brute finds an object on a ray where the thick ray meets its box
  * (core/base/ray.h). Embree has no thick rays, so its boxes are enlarged instead, by
@@ -17,7 +21,8 @@
  * is so long that rounding a denormal t moves the hit by more than growth / 4. Embree replaces |dir| < 1e-18
  * by 1e-18, so directions are scaled to ordinary lengths by a power of two. A search keeps its own best hit
  * and gives Embree a tfar that is larger by 2^-20, so ties and near ties are proposed, too, whatever Embree
- * does at t = tfar. */
+ * does at t = tfar. An instance is entered only within its own thick box, and t is clamped to that, so all
+ * this holds for instances as well. */
 #ifndef RT_ACCEL_EMBREE_H
 #define RT_ACCEL_EMBREE_H
 
@@ -32,9 +37,11 @@
 #define RT_EMBREE_STREAMS 1
 #endif
 
-/* One Embree device, and what it reports. */
+/* One Embree device, and what it reports. A scene and its parts share it. */
 typedef struct RtEmbreeDevice {
     RTCDevice device;
+    uint32_t isa;          /* choice of the parameter */
+    uint32_t users;        /* accelerators */
     _Atomic int64_t bytes; /* allocated and not freed */
     _Atomic int code;      /* RTCError: the first one, on whatever thread */
     char message[256];     /* of that error; read only while no thread builds or traces */
@@ -59,9 +66,11 @@ typedef enum RtEmbreeQueryKind {
 
 struct RtEmbree {
     RtAccel base;
-    RtEmbreeDevice device;
+    RtEmbreeDevice *device;
     RTCScene scene;
-    bool user; /* else native */
+    RtAccel **parts; /* borrowed (RtBuild) */
+    int64_t bytes;   /* that the device has allocated for the scene */
+    bool user;       /* else native */
     RtEmbreeQueryKind query;
     RtEmbreeSlot slots[RT_SHAPE_COUNT];
     uint32_t *indices;   /* [3 * triangle_count] 0, 1, 2, ...; NULL in user mode */

@@ -85,35 +85,53 @@ static RtStatus fail(int code, const char *message, RtError *error) {
     return rt_fail(error, status, "Embree reports error %d: %s", code, message);
 }
 
-/* Builds on `threads` threads (0 = all processors). `device` must stay where it is until it is released. */
-static RtStatus open_device(RtEmbreeDevice *device, uint32_t isa, int threads, RtError *error) {
+/* Builds on `threads` threads (0 = all processors). */
+static RtStatus open_device(uint32_t isa, int threads, RtEmbreeDevice **out, RtError *error) {
     char config[64];
+    RtEmbreeDevice *device = rt_alloc(1, sizeof *device);
+    if (!device) return rt_fail_memory(error, "Embree's device", sizeof *device);
     int length = snprintf(config, sizeof config, "ignore_config_files=1,threads=%d", threads);
     if (isa != ISA_DEFAULT)
         snprintf(config + length, sizeof config - (size_t)length, ",isa=%s", isa_names[isa]);
-    *device = (RtEmbreeDevice){.device = rtcNewDevice(config)};
-    if (!device->device) return fail((int)rtcGetDeviceError(NULL), "no device can be opened", error);
+    *device = (RtEmbreeDevice){.device = rtcNewDevice(config), .isa = isa, .users = 1};
+    if (!device->device) {
+        rt_free(device);
+        return fail((int)rtcGetDeviceError(NULL), "no device can be opened", error);
+    }
+    *out = device;
     rtcSetDeviceErrorFunction(device->device, note_error, device);
     rtcSetDeviceMemoryMonitorFunction(device->device, note_memory, device);
     return RT_OK;
 }
 
+static void close_device(RtEmbreeDevice *device) {
+    if (!device || --device->users > 0) return;
+    rtcReleaseDevice(device->device);
+    rt_free(device);
+}
+
+/* The accelerator of the scene's first part, if it is built and uses Embree. */
+static const RtEmbree *first_part(const RtAccel *accel, const RtBuild *what) {
+    const RtAccel *part = what->parts ? what->parts[0] : NULL;
+    return part && part->ops == accel->ops ? (const RtEmbree *)part : NULL;
+}
+
 /* The version at run time, and the instruction set of isa=default on this machine. */
 static bool library(char *out, size_t size) {
     if (size > 0) out[0] = '\0';
-    RtEmbreeDevice device;
-    if (open_device(&device, ISA_DEFAULT, 0, NULL) != RT_OK) return false;
-    long version = (long)rtcGetDeviceProperty(device.device, RTC_DEVICE_PROPERTY_VERSION);
+    RtEmbreeDevice *device;
+    if (open_device(ISA_DEFAULT, 0, &device, NULL) != RT_OK) return false;
+    long version = (long)rtcGetDeviceProperty(device->device, RTC_DEVICE_PROPERTY_VERSION);
     uint32_t isa = ISA_COUNT - 1;
     while (isa > ISA_DEFAULT && !processor_has(isa)) isa--;
     snprintf(out, size, "%ld.%ld.%ld %s", version / 10000, version / 100 % 100, version % 100,
              isa_names[isa]);
-    rtcReleaseDevice(device.device);
+    close_device(device);
     return true;
 }
 
 static RtStatus check(const RtAccel *accel, RtError *error) {
-    const RtEmbreeDevice *device = &((const RtEmbree *)accel)->device;
+    const RtEmbreeDevice *device = ((const RtEmbree *)accel)->device;
     int code = atomic_load(&device->code);
     return code == RTC_ERROR_NONE ? RT_OK : fail(code, device->message, error);
 }
@@ -135,14 +153,15 @@ static void bounds_of(const struct RTCBoundsFunctionArguments *arguments) {
     };
 }
 
-/* Sets what follows from the reach: at least four times the size of the scene, and twice the distance of the
- * camera. */
+/* Sets what follows from the reach: at least four times the size of the scene, or of a part 256 times, since
+ * rays come from all over the scene, and twice the distance of the camera. */
 static void set_reach(RtEmbree *self) {
     const RtScene *scene = self->base.scene;
     const RtBox *box = &scene->geometry.box;
     double size = fmax(rt_box_longest_side(*box), 0), magnitude = rt_box_largest_coordinate(*box);
     double camera = (double)rt_thickness(scene->camera.from, box) * 0x1p20;
-    double reach = fmax(4 * size, 2 * camera);
+    bool is_part = self->parts && scene->part_count == 0;
+    double reach = fmax((is_part ? 256 : 4) * size, 2 * camera);
     self->max_thickness = rt_float_below(reach * 0x1p-20);
     self->growth = rt_float_above(reach * 0x1p-19 + magnitude * 0x1p-21 + 0x1p-100);
 }
@@ -157,7 +176,7 @@ static void attach(RtEmbree *self, RTCGeometry geometry, RtShape shape, const ui
 }
 
 static void attach_user(RtEmbree *self, RtShape shape, const uint32_t *ids, uint32_t count) {
-    RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_USER);
+    RTCGeometry geometry = rtcNewGeometry(self->device->device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, count);
     rtcSetGeometryUserData(geometry, &self->slots[shape]);
     rtcSetGeometryBoundsFunction(geometry, bounds_of, NULL);
@@ -174,7 +193,7 @@ static void attach_triangles(RtEmbree *self, enum RTCBuildQuality quality) {
     self->indices = rt_arena_alloc(&self->base.memory, count, sizeof(uint32_t));
     if (!self->indices) return;
     for (size_t i = 0; i < count; i++) self->indices[i] = (uint32_t)i;
-    RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    RTCGeometry geometry = rtcNewGeometry(self->device->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryBuildQuality(geometry, quality);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, g->triangles, 0,
                                sizeof(RtVec3), count);
@@ -187,20 +206,37 @@ _Static_assert(sizeof(RtSphere) == 4 * sizeof(float), "centre and radius, as Emb
 
 static void attach_spheres(RtEmbree *self, enum RTCBuildQuality quality) {
     const RtGeometry *g = &self->base.scene->geometry;
-    RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    RTCGeometry geometry = rtcNewGeometry(self->device->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     rtcSetGeometryBuildQuality(geometry, quality);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, g->spheres, 0,
                                sizeof(RtSphere), g->sphere_count);
     attach(self, geometry, RT_SHAPE_SPHERE, g->sphere_ids, g->sphere_count);
 }
 
-static void attach_all(RtEmbree *self, enum RTCBuildQuality quality) {
+static void attach_instances(RtEmbree *self) {
+    const RtGeometry *g = &self->base.scene->geometry;
+    for (uint32_t i = 0; i < g->instance_count; i++) {
+        const RtInstance *instance = &g->instances[i];
+        float to_world[12];
+        for (int k = 0; k < 12; k++) to_world[k] = (float)instance->to_world.m[k / 4][k % 4];
+        RTCGeometry geometry = rtcNewGeometry(self->device->device, RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(geometry, ((const RtEmbree *)self->parts[instance->part])->scene);
+        rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, to_world);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(self->scene, geometry, RT_SHAPE_INSTANCE + i);
+        rtcReleaseGeometry(geometry);
+    }
+}
+
+static void attach_all(RtEmbree *self, enum RTCBuildQuality quality, bool own_instances) {
     const RtGeometry *g = &self->base.scene->geometry;
     bool own[RT_SHAPE_COUNT] = {false}; /* as Embree's own geometry */
     if (!self->user) {
         own[RT_SHAPE_TRIANGLE] = own[RT_SHAPE_SPHERE] = true;
         if (g->triangle_count > 0) attach_triangles(self, quality);
         if (g->sphere_count > 0) attach_spheres(self, quality);
+        own[RT_SHAPE_INSTANCE] = own_instances;
+        if (own_instances) attach_instances(self);
     }
 #define ATTACH(CONSTANT, name, Type)                                                                         \
     if (!own[RT_SHAPE_##CONSTANT] && g->name##_count > 0) {                                                  \
@@ -208,27 +244,50 @@ static void attach_all(RtEmbree *self, enum RTCBuildQuality quality) {
     }
     RT_SHAPES(ATTACH)
 #undef ATTACH
+    self->slots[RT_SHAPE_INSTANCE].first = 0; /* the primitive id of a hit is that of the object */
 }
 
 /* Directions have components up to 2^16 (RT_EMBREE_LONG). In a wider scene their products with two edges may
  * overflow, t may become NaN, and a build of Embree with assertions, such as Debian's, ends the process. */
 #define MOST_NATIVE_WIDTH 0x1p54f
 
-static RtStatus check_width(const RtBox *box, RtError *error) {
+static RtStatus check_width(const RtBox *box, double stretch, RtError *error) {
+    const double most = (double)MOST_NATIVE_WIDTH / sqrt(fmax(stretch, 1));
     float width = 0;
     for (int a = 0; a < 3; a++) width = rt_maxf(width, box->hi.at[a] - box->lo.at[a]);
-    if (width <= MOST_NATIVE_WIDTH) return RT_OK;
+    if ((double)width <= most) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
                    "embree: mode=native overflows float32 in a scene %g wide: %g would fit, or mode=user",
-                   (double)width, (double)MOST_NATIVE_WIDTH);
+                   (double)width, most);
+}
+
+/* Embree's own instances are of one level, and stretch the directions of rays. */
+static RtStatus check_instances(const RtGeometry *g, RtError *error) {
+    if (g->nesting > 1)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "embree: mode=native has no instances in instances: take mode=user, or flatten the "
+                       "scene by `raytally convert --flatten`");
+    for (uint32_t i = 0; i < g->instance_count; i++) {
+        const RtInstance *instance = &g->instances[i];
+        double stretch = 0;
+        for (int a = 0; a < 3; a++) {
+            double sum = 0;
+            for (int k = 0; k < 3; k++) sum += fabs(instance->columns[k][a]);
+            stretch = fmax(stretch, sum);
+        }
+        RT_TRY(check_width(&instance->geometry->box, stretch, error));
+    }
+    return RT_OK;
 }
 
 static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     static const enum RTCBuildQuality qualities[] = {RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM,
                                                      RTC_BUILD_QUALITY_HIGH};
     const RtValue *values = what->values;
+    const uint32_t isa = values[PARAM_ISA].choice;
     enum RTCBuildQuality quality = qualities[values[PARAM_QUALITY].choice];
     RtEmbree *self = (RtEmbree *)accel;
+    const RtGeometry *g = &accel->scene->geometry;
     self->user = values[PARAM_MODE].choice == 1;
     self->query = (RtEmbreeQueryKind)values[PARAM_QUERY].choice;
     accel->exact = self->user;
@@ -236,22 +295,32 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     accel->absolute = !self->user && !values[PARAM_ROBUST].flag;
     accel->counts = false;
     rt_isa_use(accel, rt_embree_kernels);
-    if (!self->user) RT_TRY(check_width(&self->base.scene->geometry.box, error));
-    RT_TRY(open_device(&self->device, values[PARAM_ISA].choice, what->threads, error));
+    const RtEmbree *part = first_part(accel, what);
+    const bool shares = part && part->device->isa == isa,
+               own_instances = shares && !self->user && !part->user;
+    if (!self->user) RT_TRY(check_width(&g->box, 1, error));
+    if (own_instances) RT_TRY(check_instances(g, error));
+    if (shares)
+        (self->device = part->device)->users++;
+    else
+        RT_TRY(open_device(isa, what->threads, &self->device, error));
+    const int64_t before = atomic_load(&self->device->bytes);
+    self->parts = what->parts;
     set_reach(self);
-    self->scene = rtcNewScene(self->device.device);
+    self->scene = rtcNewScene(self->device->device);
     rtcSetSceneFlags(self->scene, values[PARAM_ROBUST].flag ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     rtcSetSceneBuildQuality(self->scene, quality);
-    attach_all(self, quality);
+    attach_all(self, quality, own_instances);
     RT_TRY(rt_arena_check(&accel->memory, "Embree's list of vertices", error));
     rtcCommitScene(self->scene);
+    self->bytes = atomic_load(&self->device->bytes) - before;
     return check(accel, error);
 }
 
 static void destroy(RtAccel *accel) {
     RtEmbree *self = (RtEmbree *)accel;
     if (self->scene) rtcReleaseScene(self->scene);
-    if (self->device.device) rtcReleaseDevice(self->device.device);
+    close_device(self->device);
 }
 
 /* ---- describe, validate ---- */
@@ -262,9 +331,8 @@ static void describe(const RtAccel *accel, RtDescription *out) {
     const RtEmbree *self = (const RtEmbree *)accel;
     const RtGeometry *g = &accel->scene->geometry;
     uint64_t indices = self->indices ? (uint64_t)g->triangle_count * 3 * sizeof(uint32_t) : 0;
-    *out = (RtDescription){.references = g->object_count,
-                           .bytes = (uint64_t)atomic_load(&self->device.bytes) + indices,
-                           RT_NO_PREDICTION};
+    *out = (RtDescription){
+        .references = g->object_count, .bytes = (uint64_t)self->bytes + indices, RT_NO_PREDICTION};
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {
@@ -296,7 +364,6 @@ const RtAccelOps rt_embree_ops = {
     .bests = bests,
     .best_count = sizeof bests / sizeof bests[0],
     .available = available,
-    .flat = true,
     .bytes = sizeof(RtEmbree),
     .build = build,
     .destroy = destroy,

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* accel/embree. mode=user is brute bit for bit, by every query, instruction set and quality, in scenes of
- * every family; mode=native agrees with brute except at edges, where a difference is a margin. Skipped
- * without Embree. */
+ * every family; mode=native agrees with brute except at edges, where a difference is a margin, also in
+ * instances. Skipped without Embree. */
+#include "crossings_testing.h"
 #include "equivalence_testing.h"
+#include "instances_testing.h"
 
 #include "verify/failure.h"
 
@@ -57,7 +59,6 @@ RT_TEST(user_mode_is_brute_bit_for_bit_by_every_query_isa_and_quality_in_every_f
     for (size_t family = 0; family < rt_family_count(); family++) {
         OWNED_BENCH bench;
         set_up_family(&bench, family, 1, 37);
-        if (bench.scene.geometry.instance_count > 0) continue; /* test_instances.c: they are refused */
         for (size_t i = family % 5; i < 120; i += 5) {
             char spec[RT_MAX_SPEC_CHARS];
             snprintf(spec, sizeof spec, "embree:mode=user,isa=%s,quality=%s,query=%s,robust=%s",
@@ -125,7 +126,7 @@ RT_TEST(boxes_of_user_geometry_grow_even_among_the_least_numbers) {
 RT_TEST(the_first_error_that_embree_reports_is_told_after_tracing) {
     OWNED_SCENE_OF(scene, sphere, rt_vec3(0, 0, 0), 1);
     OWNED_ACCEL RtAccel *accel = open_accel(&scene, "cache+embree:mode=user");
-    RTCScene empty = rtcNewScene(((const RtEmbree *)accel->below)->device.device);
+    RTCScene empty = rtcNewScene(((const RtEmbree *)accel->below)->device->device);
     assert_ok(rt_accel_check(accel, error));
     rtcAttachGeometry(empty, NULL);
     assert_fails_with(rt_accel_check(accel, error), RT_MISMATCH, "invalid argument");
@@ -257,6 +258,190 @@ RT_TEST(what_is_hit_at_infinity_blocks_nothing) {
     assert_false(answer.blocked);
 }
 
+/* ---- instances ---- */
+
+/* A ball, two balls and a triangle, a square and a ball; three instances of the one and two of the other: ids
+ * 0, then 1 to 3, 4 to 6, 7 and 8 ... */
+static RtScene scene_of_two_parts(void) {
+    RtScene scene = begin_scene(), a = begin_scene(), b = begin_scene();
+    const RtVec3 triangle[3] = {{{-1, -1, 2}}, {{1, -1, 2.5f}}, {{0, 1, 2}}};
+    const RtVec3 square[4] = {{{-1, 0, -1}}, {{1, 0, -1}}, {{1, 0, 1}}, {{-1, 0, 1}}};
+    add_ball(&a, 0, 0, 0, 0.75f), add_ball(&a, 1.5f, 0, 0, 0.5f);
+    assert_ok(rt_scene_add_triangle(&a, 0, triangle, NULL, error));
+    assert_ok(rt_scene_add_polygon(&b, 0, square, 4, error));
+    add_ball(&b, 0, 2, 0, 0.5f);
+    add_part(&scene, &a), add_part(&scene, &b);
+    add_ball(&scene, 0, 0, -4, 1);
+    for (uint32_t i = 0; i < 5; i++) {
+        RtTransform at = i % 2 ? scaled(1, 2, 0.5) : scaled(2, 2, 2);
+        assert_ok(rt_transform_rotate(&at, rt_vec3(1, 2, 3), 40 * i, error));
+        assert_ok(rt_transform_translate(&at, rt_vec3(6 * (float)i - 12, (float)i, 0), error));
+        place(&scene, &scene, i % 2, at);
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
+}
+
+/* From all over a box about the scene to points in it; runs of 16 are of one kind, so packets may be
+ * coherent, and their number is that of no whole packets. */
+static void fill_chords(RtRay *rays, size_t count) {
+    RtRandom random = rt_random(26, 0);
+    for (size_t i = 0; i < count; i++) {
+        RtVec3 ends[2];
+        for (int k = 0; k < 2; k++) {
+            for (int a = 0; a < 3; a++)
+                ends[k].at[a] = (rt_random_unit(&random) - 0.5f) * (a == 0 ? 36 : k == 0 ? 30 : 8);
+        }
+        rays[i] = ray_along(ends[0], rt_sub(ends[1], ends[0]));
+        rays[i].kind = i / 256 % 2 ? RT_RAY_SHADOW : RT_RAY_RANDOM;
+    }
+}
+
+RT_TEST(native_instances_hit_the_objects_that_brute_hits) {
+    enum { CHORDS = 8 * 1024 + 5, IDS = 1 + 3 * 3 + 2 * 2 };
+    static const char *const specs[] = {"embree",
+                                        "embree:query=8",
+                                        "embree:query=16",
+                                        "embree:query=stream",
+                                        "embree:robust=on,isa=sse2",
+                                        "embree:query=16,quality=high,isa=avx2",
+                                        "bvh/embree:query=8",
+                                        "wide/embree:query=stream",
+                                        "embree:query=8/bvh",
+                                        "embree/embree:mode=user",
+                                        "embree:isa=avx/embree:isa=sse2"};
+    OWNED_SCENE scene = scene_of_two_parts();
+    OWNED_MEMORY RtRay *rays = rt_alloc(CHORDS, sizeof *rays);
+    OWNED_MEMORY RtHit *hits = rt_alloc(2 * CHORDS, sizeof *hits);
+    OWNED_MEMORY bool *blocked = rt_alloc(CHORDS, sizeof *blocked);
+    RtHit *right = hits + CHORDS;
+    uint32_t found[IDS] = {0};
+    fill_chords(rays, CHORDS);
+    {
+        OWNED_ACCEL RtAccel *brute = open_accel(&scene, "brute");
+        OWNED_QUERY query = open_query(brute);
+        rt_nearest(&query, rays, CHORDS, right, NULL);
+    }
+    for (size_t i = 0; i < CHORDS; i++)
+        if (right[i].object != RT_NO_OBJECT) found[right[i].object]++;
+    for (uint32_t id = 0; id < IDS; id++) assert_true(found[id] > 20);
+    for (size_t s = 0; s < sizeof specs / sizeof specs[0]; s++) {
+        size_t others = 0;
+        if (!embree_has(specs[s])) continue;
+        OWNED_ACCEL RtAccel *accel = open_valid(&scene, specs[s]);
+        OWNED_QUERY query = open_query(accel);
+        assert_false(accel->exact);
+        assert_false(accel->counts);
+        rt_nearest(&query, rays, CHORDS, hits, NULL);
+        rt_occluded(&query, rays, CHORDS, blocked, NULL);
+        for (size_t i = 0; i < CHORDS; i++) {
+            const bool hit = right[i].object != RT_NO_OBJECT, same = hits[i].object == right[i].object;
+            others += !same || blocked[i] != hit;
+            if (same && hit && !(fabsf(hits[i].t - right[i].t) <= 1e-4f * right[i].t))
+                fail_msg("%s: t %g, not %g", specs[s], (double)hits[i].t, (double)right[i].t);
+        }
+        if (others > 2) fail_msg("%s: %zu of %d answers differ", specs[s], others, CHORDS);
+        assert_ok(rt_accel_check(accel, error));
+    }
+}
+
+RT_TEST(instances_in_instances_need_user_mode_or_another_accelerator_on_one_level) {
+    static const char *const serve[] = {"embree:mode=user", "bvh/embree", "embree/bvh"};
+    OWNED_SCENE scene = nested(2), deeper = nested(3);
+    const RtRay ray = ray_along(rt_vec3(0.1f, 0, 9), rt_vec3(0, 0, -1));
+    OWNED_ACCEL RtAccel *brute = open_accel(&scene, "brute");
+    OWNED_QUERY of_brute = open_query(brute);
+    RtHit right, hit;
+    RtAccel *none = NULL;
+    rt_nearest(&of_brute, &ray, 1, &right, NULL);
+    assert_bad_input(rt_accel_open("embree", &scene, &none, error),
+                     "mode=native has no instances in instances");
+    assert_bad_input(rt_accel_open("bvh/embree", &deeper, &none, error), "take mode=user, or flatten");
+    assert_null(none);
+    for (size_t i = 0; i < sizeof serve / sizeof serve[0]; i++) {
+        OWNED_ACCEL RtAccel *accel = open_valid(&scene, serve[i]);
+        OWNED_QUERY query = open_query(accel);
+        rt_nearest(&query, &ray, 1, &hit, NULL);
+        assert_int_equal(hit.object, right.object);
+        assert_true(fabsf(hit.t - right.t) < 1e-5f);
+    }
+}
+
+RT_TEST(a_stack_is_exact_if_its_parts_are) {
+    static const struct {
+        const char *spec;
+        bool exact, absolute;
+    } rows[] = {{"bvh/embree", false, true},
+                {"bvh/embree:robust=on", false, false},
+                {"cache+wide/embree:mode=user", true, false},
+                {"embree:mode=user/embree", false, true}};
+    OWNED_SCENE scene = one_ball(moved(1, 2, 3));
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        OWNED_ACCEL RtAccel *accel = open_valid(&scene, rows[i].spec);
+        assert_int_equal(accel->exact, rows[i].exact);
+        assert_int_equal(accel->absolute, rows[i].absolute);
+        assert_false(accel->counts);
+    }
+}
+
+/* A part of 2^46, placed at a millionth: directions become 2^20 times as long. */
+RT_TEST(a_part_whose_instance_overflows_float32_is_refused_in_native_mode) {
+    OWNED_SCENE scene = begin_scene();
+    RtScene part = begin_scene();
+    RtAccel *none = NULL;
+    add_ball(&part, 0, 0, 0, 0x1p45f);
+    add_part(&scene, &part);
+    place(&scene, &scene, 0, scaled(1e-6, 1e-6, 1e-6));
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_bad_input(rt_accel_open("embree", &scene, &none, error), "overflows float32");
+    assert_null(none);
+    rt_accel_destroy(open_valid(&scene, "embree:mode=user"));
+}
+
+/* Each counts its own part of what their one device has allocated. */
+RT_TEST(a_scene_and_its_parts_share_a_device_and_their_bytes_are_counted_once) {
+    static const char *const specs[] = {"embree", "embree:mode=user"};
+    OWNED_SCENE scene = scene_of_two_parts();
+    int64_t live = rt_alloc_live();
+    for (int i = 0; i < 2; i++) {
+        RtDescription description;
+        OWNED_ACCEL RtEmbree *embree = open_valid(&scene, specs[i]);
+        rt_accel_describe(&embree->base, &description);
+        assert_int_equal(embree->device->users, 3);
+        for (int k = 0; k < 2; k++)
+            assert_ptr_equal(((const RtEmbree *)embree->parts[k])->device, embree->device);
+        assert_int_equal(description.bytes,
+                         (uint64_t)embree->device->bytes + (i == 0 ? 3 * sizeof(uint32_t) : 0));
+    }
+    assert_int_equal(rt_alloc_live(), live);
+}
+
+RT_TEST(an_error_in_a_part_is_told_after_tracing) {
+    OWNED_SCENE scene = one_ball(moved(1, 2, 3));
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "cache+bvh/embree");
+    assert_ok(rt_accel_check(accel, error));
+    ((const RtEmbree *)accel->below->parts[0])->device->code = RTC_ERROR_UNKNOWN;
+    assert_fails_with(rt_accel_check(accel, error), RT_MISMATCH, "Embree reports error");
+}
+
+/* Rays from all over the scene are within the reach of a part, so they test few of its objects. */
+RT_TEST(rays_from_afar_test_few_objects_of_a_part) {
+    OWNED_SCENE scene = begin_scene();
+    RtScene part = begin_scene();
+    for (int i = 0; i < 64; i++) add_ball(&part, (float)i, 0, 0, 0.25f);
+    add_part(&scene, &part);
+    for (int i = 0; i < 20; i++) place(&scene, &scene, 0, moved(0, 0, 400 * i));
+    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "embree:mode=user");
+    OWNED_QUERY query = open_query(accel);
+    RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+    const RtRay ray = ray_along(rt_vec3(5, 0, 8000), rt_vec3(0, 0, -1));
+    RtHit hit;
+    rt_nearest(&query, &ray, 1, &hit, tallies);
+    assert_int_equal(hit.object, 19 * 64 + 5);
+    assert_true(tallies[0].object_tests <= 20 * 3);
+}
+
 /* ---- both ---- */
 
 RT_TEST(a_scene_that_outgrows_its_structure_is_noticed_in_user_mode) {
@@ -294,7 +479,7 @@ RT_TEST(its_bytes_are_what_it_has_allocated_and_our_arrays) {
         RtDescription description;
         OWNED_ACCEL RtAccel *accel = open_accel(&scene, specs[i]);
         rt_accel_describe(accel, &description);
-        uint64_t counted = (uint64_t)((const RtEmbree *)accel)->device.bytes;
+        uint64_t counted = (uint64_t)((const RtEmbree *)accel)->device->bytes;
         assert_true(counted > 1000);
         assert_int_equal(description.bytes, counted + (i == 0 ? indices : 0));
     }

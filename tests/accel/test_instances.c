@@ -77,6 +77,11 @@ static const char *const specs[] = {
     "ideal/wide",
     "item+bvh/grid",
     "cache+light:cells=20,longest=3+item+wide/wide",
+#ifdef RT_WITH_EMBREE
+    "embree:mode=user",
+    "embree:mode=user,query=16/grid",
+    "wide/embree:mode=user,query=8",
+#endif
 };
 
 /* Brute answers as the definition says, and all others as brute. */
@@ -513,28 +518,14 @@ RT_TEST(more_objects_than_ids_are_refused) {
     assert_ptr_equal(at.scene, scene.parts[0]);
 }
 
-RT_TEST(accelerators_that_serve_no_instances_say_so) {
-    OWNED_SCENE scene = one_ball(rt_transform_identity());
-    static const char *const flat[] = {"embree", "cache+light+item+embree"};
-    for (size_t i = 0; i < sizeof flat / sizeof flat[0]; i++) {
-        RtAccel *accel = NULL;
-        RtError why = {RT_OK, ""};
-        const RtStatus status = rt_accel_open(flat[i], &scene, &accel, &why);
-        if (status == RT_NOT_AVAILABLE) continue;
-        assert_int_equal(status, RT_BAD_INPUT);
-        assert_non_null(strstr(why.message, "serves no scene with instances: `raytally convert --flatten`"));
-        assert_null(accel);
-    }
-}
-
 RT_TEST(an_accelerator_that_is_not_of_parts_cannot_stand_after_a_slash) {
-    static const char *const wrong[] = {"bvh/cache", "bvh/item", "bvh/embree"};
+    static const char *const wrong[] = {"bvh/cache", "bvh/item"};
     RtSpec spec;
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         RtError why = {RT_OK, ""};
         const RtStatus status = rt_spec_parse(wrong[i], &spec, &why);
         assert_int_equal(status, RT_BAD_INPUT);
-        if (i < 2) assert_non_null(strstr(why.message, "cannot stand after a '/'"));
+        assert_non_null(strstr(why.message, "cannot stand after a '/'"));
     }
     assert_bad_input(rt_spec_parse("bvh/", &spec, error), "is not the spec");
     assert_bad_input(rt_spec_parse("bvh/grid/kd", &spec, error), "");

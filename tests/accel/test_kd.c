@@ -195,7 +195,7 @@ RT_TEST(several_threads_refuse_what_one_refuses_and_leave_nothing_behind) {
         RtError refusals[2];
         for (int t = 0; t < 2; t++) {
             RtAccel *accel = NULL;
-            RtBuild what = {&scene, values, t + 1, limit};
+            RtBuild what = {&scene, values, t + 1, limit, NULL};
             assert_int_equal(rt_accel_build_layer(ops, &what, NULL, &accel, &refusals[t]), RT_BAD_INPUT);
             assert_int_equal(rt_alloc_live(), live);
         }
@@ -230,7 +230,7 @@ RT_TEST(objects_in_many_cells_are_refused_alike_on_any_number_of_threads_with_li
     assert_ok(rt_scene_finish(&scene, error));
     for (int t = 0; t < 3; t++) {
         RtAccel *accel = NULL;
-        const RtBuild what = {&scene, values, t + 1, limit};
+        const RtBuild what = {&scene, values, t + 1, limit, NULL};
         rt_memory_limit(5 * limit + 600 * OBJECTS);
         const RtStatus status = rt_accel_build_layer(ops, &what, NULL, &accel, &refusals[t]);
         assert_int_equal(rt_memory_unlimit(status, &refusals[t]), RT_BAD_INPUT);
