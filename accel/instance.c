@@ -11,11 +11,12 @@ RT_KERNEL bool enter(const RtGeometry *geometry, uint32_t id, const RtPreparedRa
     const RtInstance *instance = rt_instance_of(geometry, id);
     const RtQuery *query = &((RtHitMemory *)ray->crossings)->parts[instance->part];
     RtEntry entry;
+    RtRay inside;
     RtHit hit = RT_MISS;
-    if (!rt_enter_begin(geometry, id, ray, best, &entry, tally)) return false;
-    entry.inside.kind = 0; /* one tally for all kinds */
-    rt_trace_stream(query->accel, query->scratch, &entry.inside, 1, any ? NULL : &hit,
-                    any ? &hit.object : NULL, tally);
+    if (!rt_enter_begin(geometry, id, ray, best, &entry, &inside, tally)) return false;
+    inside.kind = 0; /* one tally for all kinds */
+    rt_trace_stream(query->accel, query->scratch, &inside, 1, any ? NULL : &hit, any ? &hit.object : NULL,
+                    tally);
     return rt_enter_end(instance, &entry, hit, any, best, tally);
 }
 

@@ -9,22 +9,21 @@
 
 #include "accel/kernel.h"
 
-/* A ray that enters an instance. */
+/* Where a ray is in an instance's own thick box. */
 typedef struct RtEntry {
-    RtRay inside;    /* moved into the part */
-    float near, far; /* where it is in the instance's own thick box */
+    float near, far;
 } RtEntry;
 
-/* False if the ray misses the instance, or can find nothing better there. */
+/* Moves the ray into the part, *inside. False if it misses the instance, or can find nothing better there. */
 RT_KERNEL bool rt_enter_begin(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray,
-                              const RtHit *best, RtEntry *entry, RtTally *tally) {
+                              const RtHit *best, RtEntry *entry, RtRay *inside, RtTally *tally) {
     rt_count_test(geometry, id, tally);
     rt_box_own_span(&geometry->boxes[id], ray, &entry->near, &entry->far);
     if (!(entry->near <= entry->far && entry->near <= rt_limit(ray, best) && entry->far >= ray->tmin))
         return false;
     const RtInstance *instance = rt_instance_of(geometry, id);
-    if (!rt_instance_enter(instance, (const RtRay *)ray->ray, &entry->inside)) return false;
-    if (best->t < entry->far) entry->inside.tmax = rt_minf(entry->inside.tmax, best->t);
+    if (!rt_instance_enter(instance, (const RtRay *)ray->ray, inside)) return false;
+    if (best->t < entry->far) inside->tmax = rt_minf(inside->tmax, best->t);
     RT_COUNT(tally, instances_entered, 1);
     RT_OBSERVE(tally, .kind = RT_TRACED_ENTERED, .index = id);
     return true;

@@ -305,15 +305,14 @@ void rt_item_update_farthest(RtItemTile *tile, uint32_t block) {
 /* The rays of a block that enter an instance, whose part answers them as a stream. */
 typedef struct Entering {
     RtEntry entries[RT_ITEM_BLOCK_SAMPLES];
+    RtRay inside[RT_ITEM_BLOCK_SAMPLES];
     uint32_t samples[RT_ITEM_BLOCK_SAMPLES], count;
 } Entering;
 
 static void enter_part(RtItemTile *tile, const RtInstance *instance, const Entering *entering) {
     const RtQuery *part = &rt_query_hit_memory(&tile->query)->parts[instance->part];
-    RtRay rays[RT_ITEM_BLOCK_SAMPLES];
     RtHit hits[RT_ITEM_BLOCK_SAMPLES];
-    for (uint32_t k = 0; k < entering->count; k++) rays[k] = entering->entries[k].inside;
-    rt_trace_stream(part->accel, part->scratch, rays, entering->count, hits, NULL, &tile->tally);
+    rt_trace_stream(part->accel, part->scratch, entering->inside, entering->count, hits, NULL, &tile->tally);
     for (uint32_t k = 0; k < entering->count; k++) {
         const uint32_t i = entering->samples[k];
         RtHit nearest = {tile->t[i], tile->id[i]};
@@ -342,9 +341,10 @@ static void draw_block(RtItemTile *tile, uint32_t block, const RtItemFootprint *
         RtPreparedRay prepared;
         rt_hit_ray(&prepared, g, &ray, rt_query_hit_memory(&tile->query));
         if (rt_is_instance(g, id)) {
-            entering.samples[entering.count] = i;
-            entering.count +=
-                rt_enter_begin(g, id, &prepared, &nearest, &entering.entries[entering.count], &tile->tally);
+            const uint32_t next = entering.count;
+            entering.samples[next] = i;
+            entering.count += rt_enter_begin(g, id, &prepared, &nearest, &entering.entries[next],
+                                             &entering.inside[next], &tile->tally);
             continue;
         }
         rt_test_object(g, id, &prepared, false, &nearest, &tile->tally);

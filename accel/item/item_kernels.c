@@ -434,15 +434,16 @@ RT_KERNEL void hit_object(const RtGeometry *g, uint32_t id, const RtRay *ray, Rt
                           RtHit *hit, RtTally *tally) {
     const RtHit none = RT_MISS;
     RtEntry entries[RT_MAX_NESTING];
+    RtRay inside[RT_MAX_NESTING];
     RtPreparedRay prepared;
     uint32_t levels = 0, object = id, at;
     rt_hit_ray(&prepared, g, ray, hit_memory);
     while (rt_is_instance(g, at = rt_geometry_holder(g, object))) {
         const RtInstance *instance = rt_instance_of(g, at);
-        if (!rt_enter_begin(g, at, &prepared, &none, &entries[levels], tally)) return;
+        if (!rt_enter_begin(g, at, &prepared, &none, &entries[levels], &inside[levels], tally)) return;
         object -= instance->first;
         g = instance->geometry;
-        rt_hit_ray(&prepared, g, &entries[levels++].inside, hit_memory);
+        rt_hit_ray(&prepared, g, &inside[levels++], hit_memory);
     }
     rt_test_object(g, object, &prepared, false, hit, tally);
     if (hit->object == RT_NO_OBJECT) return;

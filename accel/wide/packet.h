@@ -24,6 +24,7 @@
 #ifndef RT_ACCEL_WIDE_PACKET_H
 #define RT_ACCEL_WIDE_PACKET_H
 
+#include "accel/instance.h"
 #include "accel/wide/ray.h"
 
 #include <assert.h>
@@ -451,12 +452,51 @@ RT_KERNEL void test_pairs(Packet *p, const RtWideTree *tree, uint32_t least, boo
 
 /* ---- leaves ---- */
 
-RT_KERNEL void visit_list(Packet *p, const Query *q, RtWideRef ref, uint64_t rays, bool any) {
+/* Moves rays into an instance, and asks its part for their hits, as one stream. */
+static __attribute__((noinline)) void visit_instance(Packet *p, const Query *q, uint32_t id, uint64_t rays,
+                                                     bool any) {
+    const RtInstance *instance = rt_instance_of(q->geometry, id);
+    const RtQuery *part = &q->scratch->hit_memory->parts[instance->part];
+    RtEntry entry[PACKET];
+    RtRay inside[PACKET];
+    RtHit hits[PACKET];
+    uint32_t number[PACKET], occluders[PACKET], count = 0;
+    for (; rays; rays &= rays - 1) {
+        const uint32_t i = first_ray(rays);
+        const RtFloat4 inv = {p->inv[0][i], p->inv[1][i], p->inv[2][i]};
+        RtPreparedRay ray;
+        span_ray(&ray, &q->rays[p->index[i]], inv, p->tmin[i], p->tmax[i]);
+        if (!rt_enter_begin(q->geometry, id, &ray, &p->best[i], &entry[count], &inside[count], NULL))
+            continue;
+        number[count++] = i;
+    }
+    if (count == 0) return;
+    rt_trace_stream(part->accel, part->scratch, inside, count, any ? NULL : hits, any ? occluders : NULL,
+                    NULL);
+    for (uint32_t k = 0; k < count; k++) {
+        RtHit best = p->best[number[k]];
+        rt_enter_end(instance, &entry[k], any ? (RtHit){0, occluders[k]} : hits[k], any, &best, NULL);
+        if (best.object != p->best[number[k]].object) take_hit(p, number[k], best, any);
+    }
+}
+
+RT_KERNEL void visit_object(Packet *p, const Query *q, uint32_t id, uint64_t rays, bool any) {
     for (; rays; rays &= rays - 1) {
         uint32_t i = first_ray(rays);
         RtHit best = p->best[i];
-        test_objects(q, ref, packet_ray(p, q, i), any, &best, NULL);
+        test_object(q->geometry, id, packet_ray(p, q, i), any, &best, NULL);
         if (best.object != p->best[i].object) take_hit(p, i, best, any);
+    }
+}
+
+RT_KERNEL void visit_list(Packet *p, const Query *q, RtWideRef ref, uint64_t rays, bool any) {
+    const RtWideList *list = rt_wide_leaf_at(q->tree, ref);
+    for (uint32_t i = 0, count = list_count(q, ref); i < count && rays; i++) {
+        if (rt_is_instance(q->geometry, list->id[i]))
+            visit_instance(p, q, list->id[i], rays, any);
+        else
+            visit_object(p, q, list->id[i], rays, any);
+        if (any) rays &= p->open;
     }
 }
 

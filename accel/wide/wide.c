@@ -124,7 +124,7 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     self->prefetch = values[PARAM_PREFETCH].flag;
     self->fused = may_fuse(&what->scene->geometry);
     self->sharing = (float)values[PARAM_SHARING].f;
-    self->packets = instances ? 0 : (uint32_t)values[PARAM_PACKETS].i; /* these are made in the parts */
+    self->packets = (uint32_t)values[PARAM_PACKETS].i;
     RT_TRY(fill(self, 0, what, method, error));
     return two ? fill(self, 1, what, RT_TREE_BINNED, error) : RT_OK;
 }

@@ -13,7 +13,6 @@
  * streams. The sharing is estimated from the packets traced last, and packets are tried again from time to
  * time. Counted kernels trace no packets, because a count belongs to one ray, and no ray alone, whose stack
  * has another order: they always have rays in flight. */
-#include "accel/instance.h"
 #include "accel/wide/packet.h"
 
 /* Writes the answer of a ray. */
@@ -300,6 +299,7 @@ typedef struct Waiting {
     RayState *ray[RT_WIDE_MAX_STATES];
     bool over[RT_WIDE_MAX_STATES];       /* the search is */
     RtEntry entry[RT_WIDE_MAX_STATES];   /* into an instance */
+    RtRay inside[RT_WIDE_MAX_STATES];    /* moved into its part */
     uint32_t object[RT_WIDE_MAX_STATES]; /* that instance */
 } Waiting;
 
@@ -313,18 +313,6 @@ static inline void sort_by_part(const Query *q, const Waiting *w, uint32_t *rays
     for (uint32_t i = 0; i < count; i++)
         sorted[ends[rt_instance_of(q->geometry, w->object[rays[i]])->part >> shift & 255]++] = rays[i];
     memcpy(rays, sorted, count * sizeof *rays);
-}
-
-/* Prepares a ray for rt_enter_begin alone. */
-RT_KERNEL const RtPreparedRay *span_ray(RtPreparedRay *out, const RayState *f, const Query *q) {
-    const RtRay *ray = &q->rays[f->index];
-    out->tmin = f->tmin;
-    out->tmax = f->tmax;
-    out->ray = (const raytally_ray *)ray;
-    memcpy(out->org, &ray->org, sizeof out->org);
-    memcpy(out->dir, &ray->dir, sizeof out->dir);
-    memcpy(out->inv, f->inv, sizeof out->inv);
-    return out;
 }
 
 /* Tests object `slot` of the leaf at which each ray waits. */
@@ -342,7 +330,9 @@ RT_KERNEL void test_slot(const Query *q, Waiting *w, uint32_t slot, bool any, bo
         const uint32_t id = w->object[i] = ((const RtWideList *)rt_wide_leaf_at(q->tree, f->next))->id[slot];
         if (!rt_is_instance(g, id)) {
             w->over[i] = test_object(g, id, state_ray(f, q), any, &f->best, tally);
-        } else if (rt_enter_begin(g, id, span_ray(&ray, f, q), &f->best, &w->entry[i], tally)) {
+        } else if (rt_enter_begin(g, id,
+                                  span_ray(&ray, &q->rays[f->index], rt_loadu4(f->inv), f->tmin, f->tmax),
+                                  &f->best, &w->entry[i], &w->inside[i], tally)) {
             const uint32_t part = rt_instance_of(g, id)->part;
             if (part > last_part) last_part = part;
             rays[count++] = i;
@@ -353,7 +343,7 @@ RT_KERNEL void test_slot(const Query *q, Waiting *w, uint32_t slot, bool any, bo
     for (uint32_t first = 0, end; first < count; first = end) {
         const uint32_t part = rt_instance_of(g, w->object[rays[first]])->part;
         for (end = first; end < count && rt_instance_of(g, w->object[rays[end]])->part == part; end++)
-            inside[end] = w->entry[rays[end]].inside;
+            inside[end] = w->inside[rays[end]];
         rt_trace_stream(parts[part].accel, parts[part].scratch, inside + first, end - first,
                         any ? NULL : hits + first, any ? occluders + first : NULL,
                         counted ? q->tallies : NULL);
@@ -559,7 +549,7 @@ RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay
     own->source.next = own->source.taken = own->source.count = 0;
     own->source.end = count;
     own->source.pause = filtered ? &estimate->pause : NULL;
-    if (filtered && self->packets > 0 && count >= PACKET) trace_as_packets(&q, estimate, count, any);
+    if (filtered && self->packets > 0 && count >= BEAM) trace_as_packets(&q, estimate, count, any);
     if (any)
         (counted ? stream_occluded_counted : stream_occluded_timed)(&q);
     else

@@ -54,9 +54,11 @@ static inline RtFloat4 rt_instance_move(const double columns[4][4], RtFloat4 p, 
 static inline bool rt_instance_enter(const RtInstance *instance, const RtRay *ray, RtRay *inside) {
     const RtFloat4 org = rt_instance_move(instance->columns, rt_loadu4(ray->org.at), true);
     const RtFloat4 dir = rt_instance_move(instance->columns, rt_loadu4(ray->dir.at), false);
-    *inside = *ray;
-    memcpy(&inside->org, &org, sizeof inside->org);
-    memcpy(&inside->dir, &dir, sizeof inside->dir);
+    const RtFloat4 first = {org[0], org[1], org[2], ray->tmin}, last = {dir[0], dir[1], dir[2], ray->tmax};
+    memcpy(&inside->org, &first, sizeof first); /* whole vectors, which are read as such */
+    memcpy(&inside->dir, &last, sizeof last);
+    inside->kind = ray->kind;
+    inside->source = ray->source;
     const uint32_t good = rt_bits((rt_abs(org) <= RT_MAX_COORDINATE) & (rt_abs(dir) <= FLT_MAX)),
                    some = rt_bits(dir != 0);
     return (good & 7) == 7 && (some & 7);
