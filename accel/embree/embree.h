@@ -4,9 +4,9 @@
  * Each shape that has objects is one Embree geometry. The geometry id is the RtShape; primitive ids are
  * indices in that shape's array; `slots` maps them to object ids.
  *
- * In native mode over native parts, instance i is an Embree geometry of its own, with id RT_SHAPE_INSTANCE +
- * i. Otherwise instances are one user geometry, whose callback asks the accelerators of parts. In native mode
- * the primitive id of a hit there is the object's.
+ * In native mode over native parts on the same device, instance i is an Embree geometry of its own, with id
+ * RT_SHAPE_INSTANCE + i. Otherwise instances are one user geometry, whose callback asks the accelerators of
+ * parts. In native mode the primitive id of a hit there is the object's.
  *
  * Why user mode is exact. Embree only proposes candidates, and our hit functions decide; so Embree must
  * propose every object that brute finds. Brute finds an object on a ray where the thick ray meets its box

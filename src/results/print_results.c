@@ -140,11 +140,14 @@ static void print_differing(const RtResults *results, uint32_t t, FILE *out) {
         }
         if (rays == 0) continue;
         char text[RT_MAX_SENTENCE];
+        const RtCandidate *one = &experiment->candidates[c];
+        const char *name =
+            one->parsed.of_parts ? one->spec : ops->name; /* perhaps only that of the parts is */
         snprintf(
             text, sizeof text,
             "%s uses its own arithmetic. Answers that differ from the reference, if only in the last bits "
             "of t: at most %" PRIu64 " of %" PRIu64 " of a kind; `raytally verify --accel %s` judges them.",
-            ops->name, most, rays, ops->name);
+            name, most, rays, name);
         rt_print_wrapped(text, out);
     }
 }
