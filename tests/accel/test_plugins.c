@@ -117,8 +117,9 @@ RT_TEST(counts_are_the_same_on_any_number_of_threads) {
 /* ---- instances ---- */
 
 RT_TEST(to_a_plugin_an_instance_is_an_object_and_its_answers_name_those_within) {
-    static const char *const specs[] = {"my-accel", "bvh_copy", "bvh_copy/grid", "shadow-cache+bvh",
-                                        "light:cells=20+item+shadow-cache+bvh_copy/bvh"};
+    static const char *const specs[] = {"my-accel",        "bvh_copy",
+                                        "bvh_copy/grid",   "shadow-cache+bvh",
+                                        "faulty-over+bvh", "light:cells=20+item+shadow-cache+bvh_copy/bvh"};
     load_all();
     for (uint64_t seed = 1; seed <= RT_SHARE(4, 2); seed++) {
         OWNED_BENCH bench;
