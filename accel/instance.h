@@ -22,9 +22,11 @@ RT_KERNEL bool rt_enter_begin(const RtGeometry *geometry, uint32_t id, const RtP
     rt_box_own_span(&geometry->boxes[id], ray, &entry->near, &entry->far);
     if (!(entry->near <= entry->far && entry->near <= rt_limit(ray, best) && entry->far >= ray->tmin))
         return false;
-    if (!rt_instance_enter(rt_instance_of(geometry, id), (const RtRay *)ray->ray, &entry->inside))
-        return false;
+    const RtInstance *instance = rt_instance_of(geometry, id);
+    if (!rt_instance_enter(instance, (const RtRay *)ray->ray, &entry->inside)) return false;
     if (best->t < entry->far) entry->inside.tmax = rt_minf(entry->inside.tmax, best->t);
+    RT_COUNT(tally, instances_entered, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_ENTERED, .index = id);
     return true;
 }
 
@@ -39,9 +41,13 @@ RT_KERNEL bool rt_enter_end(const RtInstance *instance, const RtEntry *entry, Rt
                             RtHit *best, RtTally *tally) {
     RT_COUNT(tally, rays, -1);
     RT_COUNT(tally, hits, -(uint64_t)(hit.object != RT_NO_OBJECT));
-    if (hit.object == RT_NO_OBJECT) return false;
+    if (hit.object == RT_NO_OBJECT) {
+        RT_OBSERVE(tally, .kind = RT_TRACED_LEFT);
+        return false;
+    }
     hit.t = any ? entry->near : rt_clamp_entry(entry, hit.t);
     hit.object += instance->first;
+    RT_OBSERVE(tally, .kind = RT_TRACED_LEFT, .met = true, .t = hit.t);
     if (rt_hit_before(hit.t, hit.object, *best)) *best = hit;
     return any;
 }

@@ -14,7 +14,7 @@ static const RtBuiltin *const builtins[] = {
     &rt_builtin_balls,  &rt_builtin_gears,     &rt_builtin_jacks,   &rt_builtin_lattice, &rt_builtin_mount,
     &rt_builtin_rings,  &rt_builtin_shells,    &rt_builtin_teapot,  &rt_builtin_tetra,   &rt_builtin_tree,
     &rt_builtin_random, &rt_builtin_csg_field, &rt_builtin_stadium, &rt_builtin_hall,    &rt_builtin_forest,
-    &rt_builtin_city,   &rt_builtin_family,
+    &rt_builtin_city,   &rt_builtin_thicket,   &rt_builtin_family,
 };
 
 enum { BUILTIN_COUNT = sizeof builtins / sizeof builtins[0] };

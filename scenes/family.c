@@ -269,12 +269,57 @@ static void add_object(Family *f, uint32_t i) {
 
 /* ---- instances ---- */
 
-enum {
-    PARTS = 6,
-    IN_PART = 4,
-    INSTANCES = 16,
-    OBJECTS_OF_PARTS = 12 + (PARTS - 2) * IN_PART + (PARTS - 3) * 2 /* the cube, shapes, instances */
-};
+/* What a family has of them, by its place: parts, objects in a part, instances in a later part and in the
+ * scene. */
+typedef struct Instancing {
+    uint32_t parts, own, inner, instances;
+} Instancing;
+
+enum { COINCIDE = 40 };
+
+static Instancing instancing(const Recipe *recipe) {
+    switch (recipe->place) {
+    case ON_A_LATTICE: return (Instancing){1, 0, 0, 27};
+    case COINCIDENT: return (Instancing){3, 4, 0, 3 * COINCIDE};
+    case HUGE_BESIDE_TINY: return (Instancing){3, 4, 0, 16};
+    case CONCENTRIC: return (Instancing){8, 1, 2, 2}; /* nested in eight levels */
+    default: return (Instancing){6, 4, 2, 16};
+    }
+}
+
+static bool is_nested(const Recipe *recipe) {
+    return recipe->place == CONCENTRIC;
+}
+
+/* The objects of part `k`, without those of a cube, and its instances. */
+static uint32_t own_of(const Recipe *recipe, uint32_t k) {
+    return k == 0 || k == 5 ? is_nested(recipe) : instancing(recipe).own;
+}
+
+static uint32_t inner_of(const Recipe *recipe, uint32_t k) {
+    if (is_nested(recipe)) return k == 0 ? 0 : 1 + k % 2;
+    return k > 2 ? instancing(recipe).inner : 0;
+}
+
+/* Scaled by factors near RT_MAX_STRETCH, between turns; or sheared. */
+static RtTransform near_singular(Family *f, uint32_t i) {
+    static const float factors[][3] = {{4e-6f, 1, 1},    {1, 1, 2.5e5f}, {2e-6f, 2e-6f, 2e-6f},
+                                       {1, 2e-3f, 5e2f}, {1, 1, 4e-6f},  {1, 0.01f, 0.1f}};
+    RtTransform t = rt_transform_identity();
+    const float *by = factors[i % 6];
+    if (i % 7 == 6) {
+        t.m[0][1] = 998;
+        return t;
+    }
+    for (int turn = 0; turn < 2; turn++) {
+        const double degrees = i < 6 ? 0 : rt_random_betweend(&f->random, 0, 360);
+        const RtVec3 axis = rt_narrow(rt_random_direction(&f->random));
+        rt_build_check(f->b, rt_transform_rotate(&t, axis, degrees, f->b->error));
+        if (turn > 0) break;
+        rt_build_check(f->b, rt_transform_scale(&t, rt_vec3(by[0], by[1], by[2]), f->b->error));
+    }
+    return t;
+}
 
 /* By turns on the lattice, with quarter turns, where faces are shared and instances coincide; turned and
  * scaled unevenly; sheared; and small. Far ones are also scaled by up to 2^8, and moved by up to 2^10 times
@@ -282,6 +327,9 @@ enum {
 static RtTransform some_matrix(Family *f, uint32_t i) {
     RtRandom *r = &f->random;
     RtTransform t = rt_transform_identity();
+    if (f->recipe->place == HUGE_BESIDE_TINY) return near_singular(f, i);
+    RtRandom shared = rt_random(12, i);
+    if (f->recipe->place == COINCIDENT) r = &shared;
     RtVec3d to = i % 4 == 0 ? on_quarters(r, 2) : rt_scaled(rt_random_in_cube(r), 0.5);
     RtVec3 axis = {{0, 0, 0}}, factors;
     axis.at[i % 3] = 1;
@@ -303,13 +351,24 @@ static RtTransform some_matrix(Family *f, uint32_t i) {
     return t;
 }
 
+/* Side by side: they share all faces, and corners. */
+static RtTransform in_a_row(uint32_t i) {
+    RtTransform t = rt_transform_identity();
+    for (uint32_t a = 0; a < 3; a++) t.m[a][3] = (double)(i / (a == 0 ? 1 : a == 1 ? 3 : 9) % 3) / 4;
+    return t;
+}
+
 /* Every third is painted. Places beyond the largest coordinate are refused. */
 static void add_instance(Family *f, RtScene *to, const RtScene *of, uint32_t i) {
     RtStatus status = f->b->status == RT_OK ? RT_BAD_INPUT : f->b->status;
+    const Place place = f->recipe->place;
     for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++) {
-        RtTransform at = some_matrix(f, i);
+        const uint32_t turn = place == COINCIDENT ? i / COINCIDE : i;
+        RtTransform at = place == ON_A_LATTICE ? in_a_row(i) : some_matrix(f, turn);
         if (to == of) at = rt_transform_compose(&at, &f->b->transform);
-        const uint32_t part = rt_random_below(&f->random, of->part_count);
+        const uint32_t part = is_nested(f->recipe)  ? of->part_count - 1
+                              : place == COINCIDENT ? turn
+                                                    : rt_random_below(&f->random, of->part_count);
         status = rt_scene_add_instance(to, of, part, &at, i % 3 ? RT_OWN_MATERIALS : 0, f->b->error);
     }
     rt_build_check(f->b, status);
@@ -326,7 +385,7 @@ static void add_materials(RtSceneBuilder *b) {
 static void add_part(Family *f, uint32_t k) {
     const RtScene *whole = f->b->scene;
     const RtTransform moved = f->b->transform;
-    const uint32_t own = k == 0 || k == PARTS - 1 ? 0 : IN_PART;
+    const uint32_t own = own_of(f->recipe, k), inner = inner_of(f->recipe, k);
     rt_build_begin_part(f->b);
     f->b->transform = rt_transform_identity();
     add_materials(f->b);
@@ -335,12 +394,12 @@ static void add_part(Family *f, uint32_t k) {
     for (uint32_t i = 0; i < own; i++) {
         Placement at = placement_of(UNIFORM, &f->random, i, own);
         at.size *= 4;
-        if (k == 2)
+        if (k == 2 && !is_nested(f->recipe))
             add_tree(f, at, i);
         else
             add_mixed(f, at, i);
     }
-    for (uint32_t i = 0; k > 2 && i < 2; i++) add_instance(f, f->b->scene, whole, i);
+    for (uint32_t i = 0; i < inner; i++) add_instance(f, f->b->scene, whole, i);
     f->b->transform = moved;
     rt_build_end_part(f->b);
 }
@@ -411,7 +470,11 @@ static void add_eye(RtSceneBuilder *b) {
     X("eye-within", 80, AXIS_ALIGNED, AROUND_THE_ORIGIN, 1, 0, GIVEN, EYE)                                   \
     X("eye-among", 80, ROUND_AND_FLAT, AROUND_THE_ORIGIN, 1, 0, GIVEN, EYE)                                  \
     X("instanced", 8, INSTANCED, UNIFORM, 1, 0, GIVEN, CAMERA)                                               \
-    X("instanced-far", 8, INSTANCED, UNIFORM, 1, 1e5, GIVEN, CAMERA)
+    X("instanced-far", 8, INSTANCED, UNIFORM, 1, 1e5, GIVEN, CAMERA)                                         \
+    X("instanced-side-by-side", 0, INSTANCED, ON_A_LATTICE, 1, 0, GIVEN, CAMERA)                             \
+    X("instanced-coincident", 8, INSTANCED, COINCIDENT, 1, 0, GIVEN, CAMERA)                                 \
+    X("instanced-nested", 2, INSTANCED, CONCENTRIC, 1, 0, GIVEN, CAMERA)                                     \
+    X("instanced-stretched", 4, INSTANCED, HUGE_BESIDE_TINY, 1, 0, GIVEN, CAMERA)
 
 #define AS_RECIPE(...)       {__VA_ARGS__},
 #define AS_CHOICE(name, ...) "|" name
@@ -438,7 +501,12 @@ static uint64_t object_count(const RtValue *values) {
     const Recipe *recipe = &recipes[values[KIND].choice];
     const uint64_t n = recipe->count;
     if (recipe->make == MESH) return 8 * n * n;
-    if (recipe->make == INSTANCED) return n + OBJECTS_OF_PARTS + INSTANCES;
+    if (recipe->make == INSTANCED) {
+        const Instancing of = instancing(recipe);
+        uint64_t all = n + 12 + of.instances; /* with the cube's triangles */
+        for (uint32_t k = 0; k < of.parts; k++) all += own_of(recipe, k) + inner_of(recipe, k);
+        return all;
+    }
     return recipe->make == AXIS_ALIGNED ? n + (n + 1) / 2 : n; /* every other one is two triangles */
 }
 
@@ -453,11 +521,11 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
         add_materials(b);
     else
         rt_build_material(b, rt_default_material());
-    for (uint32_t k = 0; recipe->make == INSTANCED && k < PARTS; k++) add_part(&f, k);
+    const Instancing of = recipe->make == INSTANCED ? instancing(recipe) : (Instancing){0};
+    for (uint32_t k = 0; k < of.parts; k++) add_part(&f, k);
     if (recipe->make == MESH) add_mesh(&f, recipe->count);
     for (uint32_t i = 0; recipe->make != MESH && i < recipe->count; i++) add_object(&f, i);
-    for (uint32_t i = 0; recipe->make == INSTANCED && i < INSTANCES; i++)
-        add_instance(&f, b->scene, b->scene, i);
+    for (uint32_t i = 0; i < of.instances; i++) add_instance(&f, b->scene, b->scene, i);
     if (recipe->around == LIGHTS) add_lights(b);
     if (recipe->around == EYE) add_eye(b);
 }

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${RT_PROGRAM:-build/release/raytally}
-rays=${1:-155000}
+rays=${1:-135000}
 table=$(mktemp) && trap 'rm -f "$table"' EXIT
 
 "$program" verify families --rays "$rays" --json >"$table" || {

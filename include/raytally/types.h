@@ -61,10 +61,11 @@ enum raytally_counter {
     RAYTALLY_LEAF_STEPS,   /**< Steps that were leaves or voxels, empty ones included. */
     RAYTALLY_EMPTY_STEPS,  /**< Steps into empty leaves and voxels. */
     RAYTALLY_CSG_TESTS,    /**< Leaf solids tested inside CSG trees. */
-    RAYTALLY_REPEATS_AVOIDED, /**< Object tests that a mailbox saved. */
-    RAYTALLY_PASSED_ON,       /**< Rays of its own kind that an overlay passed to the accelerator below. */
-    RAYTALLY_COUNTERS_KNOWN,  /**< The number of counters. */
-    RAYTALLY_COUNTERS = 32    /**< The size of arrays, so that new ones do not change the layout. */
+    RAYTALLY_REPEATS_AVOIDED,   /**< Object tests that a mailbox saved. */
+    RAYTALLY_PASSED_ON,         /**< Rays of its own kind that an overlay passed to the accelerator below. */
+    RAYTALLY_INSTANCES_ENTERED, /**< Rays moved into a part, after the object test of its instance. */
+    RAYTALLY_COUNTERS_KNOWN,    /**< The number of counters. */
+    RAYTALLY_COUNTERS = 32      /**< The size of arrays, so that new ones do not change the layout. */
 };
 
 /** One value for each counter; values from RAYTALLY_COUNTERS_KNOWN on are 0. */

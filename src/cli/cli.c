@@ -139,14 +139,6 @@ RtStatus rt_cli_open_scene(const char *spec, RtScene *scene, RtError *error) {
     return RT_OK;
 }
 
-RtStatus rt_cli_refuse_instances(const RtScene *scene, const char *what, RtError *error) {
-    if (scene->geometry.instance_count == 0) return RT_OK;
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "%s: %s shows no rays inside instances: `raytally convert --flatten` writes a scene of copies",
-        scene->name, what);
-}
-
 json_t *rt_cli_vector_json(RtVec3 v) {
     return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
 }

@@ -167,9 +167,6 @@ void rt_cli_tell_warnings(const RtScene *scene);
 /* rt_scene_open, and rt_cli_tell_warnings. */
 RtStatus rt_cli_open_scene(const char *spec, RtScene *scene, RtError *error);
 
-/* RT_BAD_INPUT if it has instances, inside which a command does not show rays. */
-RtStatus rt_cli_refuse_instances(const RtScene *scene, const char *what, RtError *error);
-
 /* Prints one JSON document to stdout, indented, and takes the reference. */
 void rt_cli_print_json(json_t *document);
 

@@ -69,7 +69,6 @@ static RtStatus run(Options *o, RtError *error) {
     RT_TRY(rt_cli_check_json_name(o->scene, error));
     if (o->ray) RT_TRY(rt_cli_ray(o->ray, &given, error));
     RT_TRY(rt_cli_open_scene(o->scene, &scene, error));
-    RT_TRY(rt_cli_refuse_instances(&scene, "explore", error));
     RtStatus status = rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error);
     if (status == RT_OK) status = build(accels, specs, texts, o, &scene, error);
     if (status == RT_OK)

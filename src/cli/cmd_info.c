@@ -258,7 +258,12 @@ RtStatus rt_command_info(int argc, char **argv, RtError *error) {
     counts = count(&scene);
     RT_TRY(count_copies(&scene, &counts, error));
     if (o.nodes) RT_TRY(save_nodes(&o, &scene, error));
-    if (o.extents) RT_TRY(rt_cli_refuse_instances(&scene, "--extents", error));
+    if (o.extents && scene.geometry.instance_count > 0)
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s: --extents sees no objects inside instances: `raytally convert --flatten` writes a "
+            "scene of copies",
+            o.scene);
     if (o.extents) RT_TRY(rt_extents_table(&table, &scene, o.every_slabs, o.rays, o.seed, error));
     if (o.json) {
         json_t *info = info_json(&scene, &counts);

@@ -303,7 +303,6 @@ static RtStatus prepare(Run *run, RtError *error) {
     if (o->structure) RT_TRY(rt_structure_available(&spec, o->layer, error));
     if (o->stats) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_cli_open_scene(o->scene, &run->scene, error));
-    if (o->structure) RT_TRY(rt_cli_refuse_instances(&run->scene, "--structure", error));
     RT_TRY(rt_scene_sample(&run->scene, o->size[0], o->size[1], o->samples, o->corners, error));
     RtStatus status = build(run, 0, &run->accel, error);
     while (leave_out(run->options, status, 0, error)) status = build(run, 0, &run->accel, error);

@@ -75,7 +75,7 @@ static void print_t(double t) {
 }
 
 static const char *shape_of(const RtGeometry *g, uint32_t id) {
-    return id < g->object_count ? rt_shape_name(rt_ref_shape(g->objects[id])) : "of unknown id";
+    return id < rt_geometry_id_count(g) ? rt_shape_name(rt_geometry_shape(g, id)) : "of unknown id";
 }
 
 /* Interval `i`, or "-" twice. */
@@ -88,8 +88,8 @@ static void print_span(const RtPath *path, const RtPathRow *row, uint32_t i) {
 
 /* Where the ray meets the plane of a polygon, in the projection, and the edges that a half-line from there
  * crosses. */
-static void print_projection(const RtPath *path, const RtPolygon *polygon, const RtVec3 *vertices) {
-    const RtVec3d org = rt_widen(path->ray.org), dir = rt_widen(path->ray.dir);
+static void print_projection(const RtRay *ray, const RtPolygon *polygon, const RtVec3 *vertices) {
+    const RtVec3d org = rt_widen(ray->org), dir = rt_widen(ray->dir);
     const double at = rt_dotd(polygon->normal, rt_subd(polygon->center, org)) / rt_dotd(polygon->normal, dir);
     if (!isfinite(at)) return;
     const RtVec3d point = rt_add_scaledd(org, dir, at);
@@ -102,9 +102,9 @@ static void print_projection(const RtPath *path, const RtPolygon *polygon, const
         printf("%u edge%s crossed\n", crossed, rt_plural(crossed));
 }
 
-static void print_roots(const RtPath *path, const RtSphere *sphere) {
+static void print_roots(const RtRay *ray, const RtSphere *sphere) {
     double roots[2];
-    const int count = raytally_sphere_roots((const float *)sphere, path->ray.org.at, path->ray.dir.at, roots);
+    const int count = raytally_sphere_roots((const float *)sphere, ray->org.at, ray->dir.at, roots);
     printf("%23s  its equation has ", "");
     if (count == 0) puts("no root");
     if (count == 1) printf("the root t = %.6g\n", roots[0]);
@@ -112,25 +112,39 @@ static void print_roots(const RtPath *path, const RtSphere *sphere) {
 }
 
 /* How the hit function of a sphere or polygon finds its answer, if the ray meets the object's box. */
-static void print_test(const RtPath *path, const RtPathRow *row, const RtGeometry *g) {
+static void print_test(const RtPath *path, const RtPathRow *row) {
+    const RtPathPlace *place = &path->places[row->place];
+    const RtGeometry *g = &place->scene->geometry;
     if (row->kind != RT_TRACED_OBJECT_TEST || row->index >= g->object_count || rt_path_row_spans(row) == 0)
         return;
     const uint32_t index = rt_ref_index(g->objects[row->index]);
     const RtShape shape = rt_ref_shape(g->objects[row->index]);
-    if (shape == RT_SHAPE_SPHERE) print_roots(path, &g->spheres[index]);
-    if (shape == RT_SHAPE_POLYGON) print_projection(path, &g->polygons[index], rt_polygon_vertices(g, index));
+    if (shape == RT_SHAPE_SPHERE) print_roots(&place->ray, &g->spheres[index]);
+    if (shape == RT_SHAPE_POLYGON)
+        print_projection(&place->ray, &g->polygons[index], rt_polygon_vertices(g, index));
 }
 
-static void print_row(const RtPath *path, uint32_t index, const RtGeometry *g) {
+/* Columns of the first word of a row, which is indented by the instances around it. */
+static int word_width(const RtPath *path) {
+    uint32_t level = 0;
+    for (uint32_t i = 0; i < path->place_count; i++)
+        if (path->places[i].level > level) level = path->places[i].level;
+    return 14 + 2 * (int)level;
+}
+
+static void print_row(const RtPath *path, uint32_t index) {
     const RtPathRow *row = &path->rows[index];
-    char of[RT_MAX_NAME + 16] = "";
-    if (row->kind == RT_TRACED_OBJECT_TEST)
-        snprintf(of, sizeof of, "object %u, %s", row->index, shape_of(g, row->index));
+    const RtPathPlace *place = &path->places[row->place];
+    const int width = word_width(path), indent = 2 * (int)row->level;
+    char of[RT_MAX_NAME + 32] = "";
+    if (row->kind == RT_TRACED_OBJECT_TEST && strcmp(row->what, "object") == 0)
+        snprintf(of, sizeof of, "%s %u, %s", row->what, rt_path_row_index(path, row),
+                 shape_of(&place->scene->geometry, row->index));
     else if (row->kind == RT_TRACED_PASSED_ON)
         snprintf(of, sizeof of, "by %s", row->what);
     else if (*row->what)
-        snprintf(of, sizeof of, "%s %u", row->what, row->index);
-    printf("%5u  %-14s  %-24s", index + 1, rt_path_row_name(row), of);
+        snprintf(of, sizeof of, "%s %u", row->what, rt_path_row_index(path, row));
+    printf("%5u  %*s%-*s  %-24s", index + 1, indent, "", width - indent, rt_path_row_name(row), of);
     print_span(path, row, 0);
     if (!rt_path_row_answers(row))
         printf("  %-18s", row->listed && row->end_count == 0 ? "empty" : "");
@@ -141,16 +155,18 @@ static void print_row(const RtPath *path, uint32_t index, const RtGeometry *g) {
     print_t((double)row->nearest);
     putchar('\n');
     for (uint32_t i = 1; i < rt_path_row_spans(row); i++) {
-        printf("%5s  %-14s  %-24s", "", "", "  and");
+        printf("%5s  %*s  %-24s", "", width, "", "  and");
         print_span(path, row, i);
         putchar('\n');
     }
-    print_test(path, row, g);
+    print_test(path, row);
 }
 
-static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g) {
+static void print_rows(const RtPath *path, const Options *o) {
     uint32_t left_out = 0, joined = 0;
-    printf("\n%5s  %-14s  %-24s  %-20s  %-18s  %9s\n", "", "", "", " in box or solid, t", "", "nearest t");
+    const int width = word_width(path);
+    printf("\n%5s  %*s  %-24s  %-20s  %-18s  %9s\n", "", width, "", "", " in box or solid, t", "",
+           "nearest t");
     for (uint32_t i = 0, run; i < path->count; i += run) {
         const RtPathRow *row = &path->rows[i];
         bool hits = row->kind == RT_TRACED_OBJECT_TEST && row->met;
@@ -159,10 +175,11 @@ static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g
         if (o->rows > 0 && (int64_t)i >= o->rows && !hits) {
             left_out += run;
         } else if (run == 1) {
-            print_row(path, i, g);
+            print_row(path, i);
         } else {
-            printf("%5u  %-14s  %u objects, to row %-41u  %-18s", i + 1, "object tests", run, i + run,
-                   "all missed");
+            const int indent = 2 * (int)row->level;
+            printf("%5u  %*s%-*s  %u objects, to row %-41u  %-18s", i + 1, indent, "", width - indent,
+                   "object tests", run, i + run, "all missed");
             print_t((double)row->nearest);
             putchar('\n');
         }
@@ -193,7 +210,7 @@ static void print_path(const RtPath *path, const Options *o, const char *title, 
     char ray[RT_RAY_TEXT];
     rt_ray_format(&path->ray, ray, sizeof ray);
     printf("%s\n%s\n", title, ray);
-    print_rows(path, o, g);
+    print_rows(path, o);
     printf("\ntotal:");
     for (size_t i = 2; i < RT_TALLY_COUNTER_COUNT; i++) { /* without rays and hits */
         if (rt_tally_get(&path->tally, i) == 0) continue;
@@ -317,8 +334,9 @@ static void print_tree(const RtRayTree *tree, const RtTally *costs, const RtScen
 static json_t *row_json(const RtPath *path, const RtPathRow *row) {
     bool is_in = row->boxed && row->enter <= row->leave;
     json_t *json = json_pack(
-        "{s:s, s:s?, s:I, s:o, s:o, s:o, s:o, s:o}", "event", rt_path_row_name(row), "of",
-        *row->what ? row->what : NULL, "index", (json_int_t)row->index, "met",
+        "{s:s, s:s?, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "event", rt_path_row_name(row), "of",
+        *row->what ? row->what : NULL, "index", (json_int_t)rt_path_row_index(path, row), "level",
+        (json_int_t)row->level, "met",
         row->kind == RT_TRACED_EXTENT_TEST && !rt_path_row_answers(row) ? json_null()
                                                                         : json_boolean(row->met),
         "enter", rt_json_number(is_in ? row->enter : (double)NAN), "leave",
@@ -384,7 +402,7 @@ static json_t *ray_json(const RtTreeRay *ray, const RtTally *cost, const RtScene
         "to_light", shadow ? json_integer(ray->ray.source) : json_null(), "level", (int)ray->level, "org",
         rt_cli_vector_json(ray->ray.org), "dir", rt_cli_vector_json(ray->ray.dir), "t",
         rt_json_number((double)ray->hit.t), "object", named ? json_integer(object) : json_null(), "shape",
-        named ? rt_shape_name(rt_ref_shape(scene->geometry.objects[object])) : NULL, "blocked",
+        named ? rt_shape_name(rt_geometry_shape(&scene->geometry, object)) : NULL, "blocked",
         shadow ? json_boolean(object != RT_NO_OBJECT) : json_null(), "surface", met, "factor",
         (double)ray->factor, "total_internal_reflection", ray->total, "cut", ray->cut, "terms", terms,
         "light", color_json(ray->light), "counts", rt_json_tally(cost), "rays", json_array());
@@ -482,7 +500,6 @@ static RtStatus run(Options *o, RtError *error) {
     rt_spec_format(&spec, text);
     if (o->json) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_cli_open_scene(o->scene, &scene, error));
-    RT_TRY(rt_cli_refuse_instances(&scene, "trace", error));
     RT_TRY(rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error));
     if (o->pixel.given) RT_TRY(rt_cli_check_pixel(&scene.sampling, o->pixel, error));
     if (o->ray) RT_TRY(rt_cli_ray(o->ray, &o->given, error));

@@ -143,10 +143,31 @@ static bool cone_hit(const RtCone *cone, const RtExactLine *line, RtRoot *t) {
     return false;
 }
 
-RtExactResult rt_exact_hit(const RtGeometry *geometry, uint32_t id, const RtExactLine *line, RtRoot *t) {
-    uint32_t index = rt_ref_index(geometry->objects[id]);
+/* ---- all objects ---- */
+
+bool rt_exact_enter(const RtExactLine *line, const RtInstance *instance, RtExactLine *inside) {
+    RtExactVec columns[4], rows[3]; /* of the cofactor matrix: the inverse by Cramer's rule */
+    for (int c = 0; c < 4; c++) columns[c] = rt_exact_vec(rt_transform_column(&instance->to_world, c));
+    for (int a = 0; a < 3; a++) rows[a] = rt_exact_cross(columns[(a + 1) % 3], columns[(a + 2) % 3]);
+    const RtRational determinant = rt_exact_dot(columns[0], rows[0]);
+    if (rt_exact_sign(determinant) == 0) return false;
+    const RtExactVec from = rt_exact_vec_sub(line->org, columns[3]), along = line->dir;
+    *inside = *line;
+    for (int a = 0; a < 3; a++) {
+        inside->org.at[a] = rt_exact_div(rt_exact_dot(rows[a], from), determinant);
+        inside->dir.at[a] = rt_exact_div(rt_exact_dot(rows[a], along), determinant);
+        inside->wide.org.at[a] = (double)rt_exact_value(inside->org.at[a]);
+        inside->wide.dir.at[a] = (double)rt_exact_value(inside->dir.at[a]);
+    }
+    const RtVec3 dir = rt_narrow(inside->wide.dir);
+    return dir.x != 0 || dir.y != 0 || dir.z != 0;
+}
+
+static RtExactResult object_hit(const RtGeometry *geometry, uint32_t object, const RtExactLine *line,
+                                RtRoot *t) {
+    uint32_t index = rt_ref_index(geometry->objects[object]);
     bool hit = false;
-    switch (rt_ref_shape(geometry->objects[id])) {
+    switch (rt_ref_shape(geometry->objects[object])) {
     case RT_SHAPE_TRIANGLE: hit = triangle_hit(&geometry->triangles[index], line, t); break;
     case RT_SHAPE_SPHERE: hit = sphere_hit(&geometry->spheres[index], line, t); break;
     case RT_SHAPE_POLYGON:
@@ -154,8 +175,21 @@ RtExactResult rt_exact_hit(const RtGeometry *geometry, uint32_t id, const RtExac
         break;
     case RT_SHAPE_CONE: hit = cone_hit(&geometry->cones[index], line, t); break;
     case RT_SHAPE_CSG: return rt_exact_csg_hit(&geometry->forest, &geometry->csgs[index], line, t);
-    case RT_SHAPE_INSTANCE: /* what is judged has none */
+    case RT_SHAPE_INSTANCE: /* rt_exact_hit enters it */
     case RT_SHAPE_COUNT: return RT_UNDECIDED;
     }
     return hit ? RT_HIT : RT_MISSED;
+}
+
+RtExactResult rt_exact_hit(const RtGeometry *geometry, uint32_t id, const RtExactLine *line, RtRoot *t) {
+    RtExactLine here = *line;
+    for (;;) {
+        const uint32_t object = rt_geometry_holder(geometry, id);
+        if (!rt_is_instance(geometry, object)) return object_hit(geometry, object, &here, t);
+        const RtInstance *instance = rt_instance_of(geometry, object);
+        const RtExactLine outside = here;
+        if (!rt_exact_enter(&outside, instance, &here)) return RT_MISSED;
+        id -= instance->first;
+        geometry = instance->geometry;
+    }
 }

@@ -3,16 +3,26 @@
 
 #include "exact/referee.h"
 
-RtMarginRay rt_margin_ray(const RtGeometry *geometry, const RtRay *ray, bool absolute) {
-    RtMarginRay m = {.wide = rt_wide_ray(ray)};
-    m.line = rt_unit_line(&m.wide);
-    m.first = m.wide.tmin * m.line.length;
-    m.last = fmin(m.wide.tmax, (double)FLT_MAX) * m.line.length;
-    m.extra = 0x1p-149 * m.line.length;
-    if (!absolute) return m;
+static void set_line(RtMarginRay *m) {
+    m->line = rt_unit_line(&m->wide);
+    m->first = m->wide.tmin * m->line.length;
+    m->last = fmin(m->wide.tmax, (double)FLT_MAX) * m->line.length;
+    m->extra = 0x1p-149 * m->line.length;
+}
+
+/* What absolute coordinates add to delta. */
+static double absolute_error(const RtMarginRay *ray, const RtGeometry *geometry) {
+    if (!ray->absolute) return 0;
     double largest = geometry->object_count > 0 ? rt_box_largest_coordinate(geometry->box) : 0;
-    for (int a = 0; a < 3; a++) largest = fmax(largest, fabs(m.wide.org.at[a]));
-    m.extra += RT_MARGIN / 2 * largest;
+    for (int a = 0; a < 3; a++) largest = fmax(largest, fabs(ray->wide.org.at[a]));
+    return RT_MARGIN / 2 * largest;
+}
+
+RtMarginRay rt_margin_ray(const RtGeometry *geometry, const RtRay *ray, bool absolute) {
+    RtMarginRay m = {
+        .wide = rt_wide_ray(ray), .absolute = absolute, .scale = 1, .enter = -HUGE_VAL, .leave = HUGE_VAL};
+    set_line(&m);
+    m.extra += absolute_error(&m, geometry);
     return m;
 }
 
@@ -23,9 +33,95 @@ static RtBox reach_of(const RtGeometry *g, uint32_t id) {
     return rt_box_union(g->boxes[id], g->csgs[rt_ref_index(ref)].reach);
 }
 
-double rt_margin_delta(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id) {
-    RtBox reach = reach_of(geometry, id);
+static double delta_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t object) {
+    RtBox reach = reach_of(geometry, object);
     return RT_MARGIN * rt_far_corner(&ray->line, &reach) + ray->extra;
+}
+
+/* ---- instances ---- */
+
+/* Sets inside->off: what `outside` is off by in the part, and what moving the ray adds. */
+static void add_rounding(const RtInstance *instance, const RtBox *box, const RtMarginRay *outside,
+                         RtMarginRay *inside) {
+    const double(*m)[4] = instance->to_world.m, (*inverse)[4] = instance->columns;
+    const double part = (double)rt_box_largest_coordinate(instance->geometry->box);
+    double cofactors[3][3], from[3], determinant = 0;
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1) % 3, c = (a + 2) % 3;
+        for (int k = 0; k < 3; k++) { /* of column a, row k */
+            const int u = (k + 1) % 3, v = (k + 2) % 3;
+            const double one = m[u][b] * m[v][c], other = m[v][b] * m[u][c];
+            cofactors[a][k] = fabs(one) + fabs(other);
+            if (a == 0) determinant += m[k][0] * (one - other);
+        }
+        const double box_most = fmax(fabs((double)box->lo.at[a]), fabs((double)box->hi.at[a]));
+        from[a] = fmax(box_most, fabs(outside->wide.org.at[a])) + outside->off.at[a] + fabs(m[a][3]) +
+                  part * (fabs(m[a][0]) + fabs(m[a][1]) + fabs(m[a][2]));
+    }
+    for (int a = 0; a < 3; a++) {
+        double off = 0x1p-140;
+        for (int k = 0; k < 3; k++)
+            off += 2 * RT_MARGIN * cofactors[a][k] / fabs(determinant) * from[k] +
+                   fabs(inverse[k][a]) * outside->off.at[k];
+        inside->off.at[a] = off;
+    }
+}
+
+/* Where t may be clamped: from the beginning of the thick box to that of a box that is surely inside it. */
+static void add_clamps(const RtBox *box, const RtMarginRay *outside, RtMarginRay *inside) {
+    const RtUnitLine *line = &outside->line;
+    const double grown = RT_MARGIN * (2 * rt_far_corner(line, box) + rt_lengthd(line->org)) + outside->extra;
+    double lo, hi, near, far;
+    if (!rt_line_in_box(line, box, grown, &lo, &hi)) return;
+    if (!rt_line_in_box(line, box, -grown, &near, &far)) near = hi, far = lo;
+    inside->enter = fmax(outside->enter, near / line->length);
+    inside->leave = fmin(outside->leave, far / line->length);
+}
+
+/* Moves the ray into an instance; the error of double is far below what is added to delta. */
+static RtMarginRay enter(const RtMarginRay *outside, const RtGeometry *geometry, uint32_t object) {
+    const RtInstance *instance = rt_instance_of(geometry, object);
+    const RtBox *box = &geometry->boxes[object];
+    const double(*inverse)[4] = instance->columns;
+    RtMarginRay inside = *outside;
+    double largest = 0;
+    for (int a = 0; a < 3; a++) {
+        const RtVec3d column = {inverse[0][a], inverse[1][a], inverse[2][a]};
+        inside.wide.org.at[a] = rt_dotd(column, outside->wide.org) + inverse[3][a];
+        inside.wide.dir.at[a] = rt_dotd(column, outside->wide.dir);
+        largest = fmax(largest, fabs(inside.wide.org.at[a]));
+    }
+    set_line(&inside);
+    add_rounding(instance, box, outside, &inside);
+    add_clamps(box, outside, &inside);
+    const double more = absolute_error(&inside, instance->geometry), far = rt_far_corner(&outside->line, box),
+                 length = outside->line.length;
+    for (int a = 0; a < 3; a++) inside.off.at[a] += more;
+    inside.extra += rt_lengthd(inside.off);
+    inside.scale *= length / inside.line.length;
+    inside.unclear |=
+        largest > (double)RT_MAX_COORDINATE / 2 || rt_exceeds_float(inside.line.length, inside.line.length) ||
+        rt_exceeds_float(fmin(far, length) * fmin(far, length), fmax(far, length) * fmax(far, length));
+    return inside;
+}
+
+/* Follows an id into instances: the geometry and object that it names, and the ray there. */
+static RtMarginRay follow(const RtMarginRay *ray, const RtGeometry **geometry, uint32_t *id) {
+    RtMarginRay here = *ray;
+    for (;;) {
+        const uint32_t object = rt_geometry_holder(*geometry, *id);
+        if (!rt_is_instance(*geometry, object)) return here;
+        const RtInstance *instance = rt_instance_of(*geometry, object);
+        const RtMarginRay outside = here;
+        here = enter(&outside, *geometry, object);
+        *id -= instance->first;
+        *geometry = instance->geometry;
+    }
+}
+
+double rt_margin_delta(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id) {
+    const RtMarginRay here = follow(ray, &geometry, &id);
+    return delta_of(&here, geometry, id) * here.scale;
 }
 
 /* ---- pieces of the line ---- */
@@ -43,6 +139,11 @@ static void add_piece(const Making *making, double lo, double hi, bool crossed) 
     RtMargin *m = making->margin;
     const RtMarginRay *ray = making->ray;
     const double delta = making->delta, asked = making->asked;
+    const bool sure = crossed && lo >= ray->first + delta && hi <= ray->last - delta;
+    if (!sure) {
+        lo = fmin(lo, ray->leave * ray->line.length);
+        hi = fmax(hi, ray->enter * ray->line.length);
+    }
     lo = fmax(lo, ray->first - delta);
     hi = fmin(hi, ray->last + delta);
     if (m->certain || !(lo <= hi)) return;
@@ -53,7 +154,7 @@ static void add_piece(const Making *making, double lo, double hi, bool crossed) 
         m->lo = lo;
         m->hi = hi;
     }
-    m->certain = crossed && lo >= ray->first + delta && hi <= ray->last - delta;
+    m->certain = sure;
     m->latest = hi;
 }
 
@@ -206,14 +307,19 @@ static void flat_margin(const Making *m, const RtVec3 *vertices, uint32_t count,
     m->margin->edge_on = flat.edge_on;
 }
 
-RtStatus rt_margin_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id, double asked,
-                      RtMargin *m, RtError *error) {
+/* In distances along that ray. */
+static RtStatus object_margin(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id, double asked,
+                              RtMargin *m, RtError *error) {
     uint32_t index = rt_ref_index(geometry->objects[id]);
     const RtBox *box = &geometry->boxes[id];
-    double delta = rt_margin_delta(ray, geometry, id), far = delta / RT_MARGIN, length = ray->line.length;
+    double delta = delta_of(ray, geometry, id), far = delta / RT_MARGIN, length = ray->line.length;
     const Making making = {m, ray, delta, asked};
     double lo, hi;
     *m = (RtMargin){.earliest = HUGE_VAL};
+    if (ray->unclear) {
+        add_piece(&making, -HUGE_VAL, HUGE_VAL, false);
+        return RT_OK;
+    }
     if (!rt_line_in_box(&ray->line, box, delta, &lo, &hi) || hi < ray->first - delta ||
         lo > ray->last + delta)
         return RT_OK;
@@ -232,8 +338,55 @@ RtStatus rt_margin_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32
     case RT_SHAPE_SPHERE: sphere_margin(&making, &geometry->spheres[index]); break;
     case RT_SHAPE_CONE: cone_margin(&making, &geometry->cones[index]); break;
     case RT_SHAPE_CSG: return csg_margin(&making, geometry, index, error);
-    case RT_SHAPE_INSTANCE: /* what is judged has none */
+    case RT_SHAPE_INSTANCE: /* entered before */
     case RT_SHAPE_COUNT: break;
     }
     return RT_OK;
+}
+
+/* In distances along the ray outside. */
+static RtStatus margin_outside(const RtMarginRay *here, const RtGeometry *geometry, uint32_t object,
+                               double asked, RtMargin *m, RtError *error) {
+    double *const distances[] = {&m->earliest, &m->latest, &m->lo, &m->hi};
+    RT_TRY(object_margin(here, geometry, object, asked / here->scale, m, error));
+    for (int i = 0; i < 4; i++) *distances[i] *= here->scale;
+    return RT_OK;
+}
+
+RtStatus rt_margin_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id, double asked,
+                      RtMargin *m, RtError *error) {
+    const RtMarginRay here = follow(ray, &geometry, &id);
+    return margin_outside(&here, geometry, id, asked, m, error);
+}
+
+typedef struct Visit {
+    double asked;
+    RtMarginVisitor *see;
+    void *context;
+} Visit;
+
+/* The objects of a geometry, whose ids begin at `first`, and the ray there. */
+static RtStatus visit(const Visit *v, const RtMarginRay *ray, const RtGeometry *geometry, uint32_t first,
+                      RtError *error) {
+    for (uint32_t object = 0; object < geometry->object_count; object++) {
+        if (rt_is_instance(geometry, object)) {
+            const RtInstance *instance = rt_instance_of(geometry, object);
+            const RtMarginRay inside = enter(ray, geometry, object);
+            const RtBox *box = &instance->geometry->box;
+            double lo, hi, delta = RT_MARGIN * rt_far_corner(&inside.line, box) + inside.extra;
+            if (inside.unclear || rt_line_in_box(&inside.line, box, delta, &lo, &hi))
+                RT_TRY(visit(v, &inside, instance->geometry, first + instance->first, error));
+            continue;
+        }
+        RtMargin m;
+        RT_TRY(margin_outside(ray, geometry, object, v->asked, &m, error));
+        if (m.possible) v->see(v->context, first + object, &m);
+    }
+    return RT_OK;
+}
+
+RtStatus rt_margin_of_all(const RtMarginRay *ray, const RtGeometry *geometry, double asked,
+                          RtMarginVisitor *see, void *context, RtError *error) {
+    const Visit v = {asked, see, context};
+    return visit(&v, ray, geometry, 0, error);
 }

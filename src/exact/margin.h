@@ -21,7 +21,25 @@
  * The ends of the ray's interval move by delta, too. The first certain crossing ends the object's margin.
  *
  * An accelerator may declare that it computes with absolute coordinates (RtAccel.absolute): then delta is
- * larger by 2^-21 of the largest coordinate of the scene's box and the ray's origin. */
+ * larger by 2^-21 of the largest coordinate of the scene's box and the ray's origin.
+ *
+ * Instances. An object in a part has its margin there, for the ray that the inverse of the matrix moves into
+ * the part. An accelerator may invert and move in float32, at each level, or move the part's points instead.
+ * With u = 2^-24, C the cofactors of the matrix M with sums in place of differences, W = C / |det M|, and r
+ * the largest coordinate of the part, Cramer's rule moves a point p of the ray, at most q, as follows.
+ * Cofactors err by 4u C, and the division by 3u: 7u W (q + |at|). The determinant errs by 8u of its products
+ * without signs, which scales the part: 8u W |M| r. Moving adds 4u of the origin's, 8u of the direction's (t
+ * |dir| <= 2 q) and 5u of |at|'s part. A moved point of the part errs by 4u W (|M| r + |at|), and its
+ * rounding by u q. That is less than
+ *
+ *     2^-19 W (q + |at| + |M| r)                                                           (32u, per axis)
+ *
+ * and the inverse moves what the levels outside are off by; delta is larger by the length of the sum. Ours
+ * round once a level, from doubles, and are far below it. Where float32 cannot invert, nothing is certain.
+ *
+ * Ours also clamp t to the interval of the instance's thick box. That contains the exact t of a hit, so t
+ * does not leave the piece of a certain crossing. The pieces of others are extended to the ends of the
+ * interval. */
 #ifndef RT_EXACT_MARGIN_H
 #define RT_EXACT_MARGIN_H
 
@@ -75,7 +93,13 @@ typedef struct RtMarginRay {
     RtWideRay wide;
     RtUnitLine line;
     double first, last; /* the interval as distances */
-    double extra; /* added to delta: the least float32 as a difference of t, and for absolute coordinates */
+    double
+        extra; /* added to delta: the least float32 as a difference of t; for absolute coordinates; |off| */
+    bool absolute;
+    RtVec3d off;         /* by how far the ray may be off in a part */
+    double scale;        /* distances outside per distance here */
+    double enter, leave; /* t to which the pieces of uncertain crossings are extended in a part */
+    bool unclear;        /* moved beyond the range of float32: anything there may be hit anywhere */
 } RtMarginRay;
 
 /* For a valid ray. */
@@ -90,11 +114,17 @@ typedef struct RtMargin {
     bool edge_on;    /* as of RtFlatMargin */
 } RtMargin;
 
+/* delta of object `id`, as a distance along the ray. */
 double rt_margin_delta(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id);
 
 /* The margin of object `id`; `asked` is a distance along the ray, or NAN. RT_NO_MEMORY for a CSG tree alone.
  */
 RtStatus rt_margin_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32_t id, double asked,
                       RtMargin *margin, RtError *error);
+
+/* Calls see(context, id, margin) for each object that is possible, in order of ids. */
+typedef void RtMarginVisitor(void *context, uint32_t id, const RtMargin *margin);
+RtStatus rt_margin_of_all(const RtMarginRay *ray, const RtGeometry *geometry, double asked,
+                          RtMarginVisitor *see, void *context, RtError *error);
 
 #endif

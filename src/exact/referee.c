@@ -19,18 +19,17 @@ long double rt_float_ulp(long double x) {
 /* ---- the nearest ---- */
 
 typedef struct Search {
-    const RtGeometry *geometry;
-    RtExactLine line;
     RtRoot best;
     RtExactAnswer nearest;
     double open; /* the smallest t at which an undecided object may be met */
 } Search;
 
 /* Numbers of objects that are not the nearest are discarded at once. */
-static void consider(Search *s, uint32_t id, double soonest) {
+static void consider(Search *s, const RtGeometry *g, uint32_t object, const RtExactLine *line, uint32_t id,
+                     double soonest) {
     size_t mark = rt_exact_mark();
     RtRoot t;
-    RtExactResult result = rt_exact_hit(s->geometry, id, &s->line, &t);
+    RtExactResult result = rt_exact_hit(g, object, line, &t);
     if (result == RT_UNDECIDED) s->open = fmin(s->open, soonest);
     int order = -1;
     if (result == RT_HIT && s->nearest.tied > 0) order = rt_root_compare(&t, &s->best);
@@ -41,22 +40,49 @@ static void consider(Search *s, uint32_t id, double soonest) {
     }
     s->best = t;
     s->nearest =
-        (RtExactAnswer){.result = RT_HIT, .object = id, .tied = 1, .t = rt_root_value(&t, s->line.zero)};
+        (RtExactAnswer){.result = RT_HIT, .object = id, .tied = 1, .t = rt_root_value(&t, line->zero)};
+}
+
+/* The box of an object; that of an instance with what double rounds its corners by. */
+static RtBox whole_box(const RtGeometry *g, uint32_t object) {
+    RtBox box = g->boxes[object];
+    for (int a = 0; a < 3 && rt_is_instance(g, object); a++) {
+        const double *m = rt_instance_of(g, object)->to_world.m[a];
+        const double part = (double)rt_box_largest_coordinate(rt_instance_of(g, object)->geometry->box);
+        const double off = 0x1p-50 * ((fabs(m[0]) + fabs(m[1]) + fabs(m[2])) * part + fabs(m[3]));
+        box.lo.at[a] = rt_float_below((double)box.lo.at[a] - off);
+        box.hi.at[a] = rt_float_above((double)box.hi.at[a] + off);
+    }
+    return box;
+}
+
+/* The objects of a geometry, whose ids begin at `first`, and the line moved there. */
+static void search(Search *s, const RtGeometry *g, const RtExactLine *line, uint32_t first) {
+    for (uint32_t object = 0; object < g->object_count; object++) {
+        const RtBox box = whole_box(g, object);
+        double soonest;
+        if (!rt_line_may_meet(&line->wide, &box, &soonest)) continue;
+        if ((long double)soonest * (1 - RT_LINE_SLACK) > s->nearest.t) continue;
+        if (!rt_is_instance(g, object)) {
+            consider(s, g, object, line, first + object, soonest);
+            continue;
+        }
+        const RtInstance *instance = rt_instance_of(g, object);
+        const uint32_t before = s->nearest.object;
+        size_t mark = rt_exact_mark();
+        RtExactLine inside;
+        if (rt_exact_enter(line, instance, &inside))
+            search(s, instance->geometry, &inside, first + instance->first);
+        if (s->nearest.object == before) rt_exact_rewind(mark);
+    }
 }
 
 RtExactAnswer rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray) {
     size_t mark = rt_exact_mark();
-    RtWideRay line = rt_wide_ray(ray);
-    Search s = {.geometry = geometry,
-                .line = rt_exact_line(&line),
-                .nearest = {.result = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL},
-                .open = HUGE_VAL};
-    for (uint32_t id = 0; id < geometry->object_count; id++) {
-        double soonest;
-        if (!rt_line_may_meet(&line, &geometry->boxes[id], &soonest)) continue;
-        if ((long double)soonest * (1 - RT_LINE_SLACK) > s.nearest.t) continue;
-        consider(&s, id, soonest);
-    }
+    const RtWideRay wide = rt_wide_ray(ray);
+    const RtExactLine line = rt_exact_line(&wide);
+    Search s = {.nearest = {.result = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL}, .open = HUGE_VAL};
+    search(&s, geometry, &line, 0);
     if (s.open < HUGE_VAL && (long double)s.open <= s.nearest.t) s.nearest.result = RT_UNDECIDED;
     rt_exact_rewind(mark);
     return s.nearest;
@@ -68,7 +94,7 @@ RtExactAnswer rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray) {
 static RtExactResult is_right(const RtGeometry *geometry, const RtRay *ray, const RtExactAnswer *nearest,
                               RtHit answer, double tolerance) {
     if (answer.object == RT_NO_OBJECT) return nearest->result == RT_MISSED ? RT_HIT : RT_MISSED;
-    if (nearest->result == RT_MISSED || answer.object >= geometry->object_count) return RT_MISSED;
+    if (nearest->result == RT_MISSED || answer.object >= rt_geometry_id_count(geometry)) return RT_MISSED;
     RtWideRay line = rt_wide_ray(ray);
     long double t;
     RtExactResult own = rt_referee_hit(geometry, answer.object, &line, &t);

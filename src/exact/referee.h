@@ -36,7 +36,8 @@
  *              defines.
  *
  * Edges, vertices, circles and the ends of the interval are included. The own box of an object plays no
- * role. */
+ * role. An object in instances is met by the line that the exact inverses of their `to_world`, a matrix of
+ * doubles, move into its part. */
 
 /* Does the line meet an object within [tmin, tmax]? */
 typedef enum RtExactResult { RT_MISSED, RT_HIT, RT_UNDECIDED } RtExactResult;
@@ -44,6 +45,10 @@ typedef enum RtExactResult { RT_MISSED, RT_HIT, RT_UNDECIDED } RtExactResult;
 /* Does the line meet object `id` within [tmin, tmax]? If so, *t is the first such number. Undecided only
  * if memory does not suffice for the crossings of a CSG tree. */
 RtExactResult rt_exact_hit(const RtGeometry *geometry, uint32_t id, const RtExactLine *line, RtRoot *t);
+
+/* Moves the line into the part of an instance; t stays what it is. False if nothing there can be met, because
+ * the matrix has no inverse or the direction vanishes in float32. */
+bool rt_exact_enter(const RtExactLine *line, const RtInstance *instance, RtExactLine *inside);
 
 /* ---- CSG trees: exact_csg.c ---- */
 

@@ -49,6 +49,7 @@ SAME_COUNTER(EMPTY_STEPS, empty_steps)
 SAME_COUNTER(CSG_TESTS, csg_tests)
 SAME_COUNTER(REPEATS_AVOIDED, repeats_avoided)
 SAME_COUNTER(PASSED_ON, passed_on)
+SAME_COUNTER(INSTANCES_ENTERED, instances_entered)
 _Static_assert((int)RAYTALLY_COUNTERS_KNOWN == (int)RT_TALLY_COUNTER_COUNT, "none is left out");
 
 /* The room in structs of results is part of the binary interface. */

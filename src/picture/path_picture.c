@@ -5,6 +5,9 @@
  * inset at the left shows the whole path. Objects that the ray does not test and leaves that it does not
  * visit are pale.
  *
+ * What lies in the part of an instance is cut by the same plane there, and the drawing of that is distorted
+ * as the instance is (enter_place).
+ *
  * The lower part has a line for each row of the path, with bars where the ray is in its box, or in the solid
  * or part of a CSG tree. Section and bars share the x axis. */
 #include "picture/pictures.h"
@@ -23,6 +26,7 @@ enum { FONT_SIZE = 11, TITLE_SIZE = 16 };
 typedef struct Window {
     double x, y, width, height; /* pixels */
     RtSection section;
+    double t; /* of section.on, on the ray */
 } Window;
 
 typedef struct Drawing {
@@ -125,7 +129,8 @@ static void aim(const Drawing *d, Part part, Window *window) {
     RtSection *section = &window->section;
     section->scale = window->width / (length * d->speed);
     if (slope != 0) section->scale = fmin(section->scale, 0.8 * window->height / (length * slope));
-    section->on = rt_add_scaledd(rt_widen(ray->org), rt_widen(ray->dir), (part.first + part.last) / 2);
+    window->t = (part.first + part.last) / 2;
+    section->on = rt_add_scaledd(rt_widen(ray->org), rt_widen(ray->dir), window->t);
     section->origin = (RtPoint){window->x + window->width / 2, window->y + window->height / 2};
 }
 
@@ -155,14 +160,43 @@ static bool is_missed(const RtPathRow *row) {
     return row->kind == RT_TRACED_EXTENT_TEST && !row->met;
 }
 
+static RtVec3d turn(const RtTransform *m, RtVec3d v) {
+    return rt_subd(rt_transform_pointd(m, v), rt_transform_column(m, 3));
+}
+
+/* Sets *section to the plane in the place's own coordinates, through the same point of the ray, and the
+ * matrix of cairo to what a drawing of it looks like from outside. Undo with cairo_restore. */
+static void enter_place(const Drawing *d, const RtPathPlace *place, RtSection *section) {
+    const RtSection *outside = &d->window->section;
+    const RtTransform *m = &place->to_world;
+    cairo_save(d->cairo);
+    *section = *outside;
+    if (place->level == 0) return;
+    RtVec3d normal; /* of a plane: by the transposed matrix */
+    for (int a = 0; a < 3; a++) normal.at[a] = rt_dotd(outside->normal, rt_transform_column(m, a));
+    section->normal = rt_normalized(normal);
+    section->right = rt_normalized(rt_widen(place->ray.dir));
+    section->up = rt_crossd(section->normal, section->right);
+    section->on = rt_add_scaledd(rt_widen(place->ray.org), rt_widen(place->ray.dir), d->window->t);
+    section->origin = (RtPoint){0, 0};
+    const RtVec3d right = turn(m, section->right), up = turn(m, section->up);
+    const double size = rt_lengthd(right), by = outside->scale / (section->scale = outside->scale * size);
+    cairo_transform(d->cairo,
+                    &(cairo_matrix_t){rt_dotd(right, outside->right) * by, -rt_dotd(right, outside->up) * by,
+                                      -rt_dotd(up, outside->right) * by, rt_dotd(up, outside->up) * by,
+                                      outside->origin.x, outside->origin.y});
+}
+
 static void draw_extent(const Drawing *d, uint32_t i) {
     const RtPathRow *row = &d->path->rows[i];
-    const RtSection *section = &d->window->section;
+    RtSection inside, *section = &inside;
+    enter_place(d, &d->path->places[row->place], section);
     bool leaf = row->kind == RT_TRACED_STEP && row->leaf;
     if (row->round)
         rt_section_add_ball(section, d->cairo, row->ball.center, row->ball.radius);
     else
         rt_section_add_extent(section, d->cairo, &(RtBoxView){.box = &row->box});
+    cairo_restore(d->cairo);
     if (is_missed(row))
         rt_paint(d->cairo, (RtStyle){light, 1, 0, true});
     else
@@ -170,9 +204,16 @@ static void draw_extent(const Drawing *d, uint32_t i) {
 }
 
 static void draw_object(const Drawing *d, const RtPathRow *row) {
-    if (row->index >= d->geometry->object_count) return;
-    rt_section_add_object(&d->window->section, d->cairo, d->geometry, row->index, d->hit_memory);
-    rt_paint(d->cairo, row->met ? (RtStyle){hit_color, 2, 0.25, false} : (RtStyle){dark, 1, 0.1, false});
+    const RtPathPlace *place = &d->path->places[row->place];
+    const RtGeometry *g = &place->scene->geometry;
+    RtSection section;
+    if (row->index >= g->object_count) return;
+    enter_place(d, place, &section);
+    rt_section_add_object(&section, d->cairo, g, row->index, d->hit_memory);
+    cairo_restore(d->cairo);
+    RtStyle style = row->met ? (RtStyle){hit_color, 2, 0.25, false} : (RtStyle){dark, 1, 0.1, false};
+    if (rt_is_instance(g, row->index)) style.opacity = 0; /* more is drawn inside */
+    rt_paint(d->cairo, style);
 }
 
 /* ---- what the ray does not visit ---- */
@@ -325,13 +366,14 @@ static void draw_row(const Drawing *d, uint32_t i, double y) {
     if (row->kind == RT_TRACED_PASSED_ON)
         snprintf(of, sizeof of, " by %s", row->what);
     else if (*row->what)
-        snprintf(of, sizeof of, ", %s %u", row->what, row->index);
+        snprintf(of, sizeof of, ", %s %u", row->what, rt_path_row_index(d->path, row));
     const char *result = row->listed && row->end_count == 0 ? ": empty"
                          : !rt_path_row_answers(row)        ? ""
                          : row->met                         ? ": hit"
                                                             : ": missed";
-    rt_draw_text(d->cairo, MARGIN, y + ROW - 3, RT_BLACK, "%u  %s%s%s", i + 1, rt_path_row_name(row), of,
-                 result);
+    const int indent = 3 * (int)row->level;
+    rt_draw_text(d->cairo, MARGIN, y + ROW - 3, RT_BLACK, "%u  %*s%s%s%s", i + 1, indent, "",
+                 rt_path_row_name(row), of, result);
     draw_bars(d, i, y);
     if (object && row->met)
         rt_draw_disc(d->cairo, (RtPoint){x_of(d, (double)row->t), y + ROW / 2.0}, 4, hit_color);

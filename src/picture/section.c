@@ -281,7 +281,9 @@ void rt_section_add_object(const RtSection *section, cairo_t *cairo, const RtGeo
         scan(section, cairo, geometry, id, section->right, section->up, hit_memory);
         scan(section, cairo, geometry, id, section->up, section->right, hit_memory);
         break;
-    case RT_SHAPE_INSTANCE: /* what is drawn has none */
+    case RT_SHAPE_INSTANCE:
+        rt_section_add_extent(section, cairo, &(RtBoxView){.box = &geometry->boxes[id]});
+        break;
     case RT_SHAPE_COUNT: break;
     }
 }

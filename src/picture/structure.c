@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* In perspective, boxes are drawn in homogeneous view coordinates: (x, y, w) with w the distance along the
  * axis and -w <= x, y <= w inside the image, so that the near plane and the sides of the view clip alike.
- * In section, boxes and objects are cut by a plane. */
+ * In section, boxes and objects are cut by a plane.
+ *
+ * In perspective, boxes of the structures of parts are drawn in each instance, as the instance distorts them,
+ * unless they are too many; their levels are those of their own structure. */
 #include "picture/pictures.h"
 
 #include "core/base/elementary.h"
@@ -12,6 +15,7 @@
 #include <string.h>
 
 enum { LEAST_WIDTH = 300, LINES = 3 }; /* of the legend */
+enum { MOST_IN_PARTS = 200000 };       /* boxes in instances */
 
 static const RtColor object_color = {{130, 130, 130}};
 
@@ -29,6 +33,9 @@ typedef struct Drawing {
     uint32_t first, last; /* range of drawn levels */
     uint32_t level;       /* current level */
     bool hidden;          /* draw hidden or visible edges */
+    bool parts;           /* those of parts are drawn, too */
+    RtTransform to_world; /* of the boxes being drawn */
+    RtVec3d eye;          /* the eye among them */
     RtExtentKind kind;    /* of what is drawn */
     uint64_t drawn, all;  /* boxes */
     double least, most;   /* their sizes: lengths of diagonals, points left out */
@@ -91,6 +98,32 @@ static void set_line(const Drawing *d, double place, double opacity) {
     cairo_set_line_width(d->cairo, 2 - 1.2 * place);
 }
 
+/* ---- boxes in instances ---- */
+
+static void show_parts(Drawing *d, const RtGeometry *g, void (*show)(void *, const RtBoxView *)) {
+    const RtTransform outside = d->to_world;
+    const RtVec3d eye = d->eye;
+    for (uint32_t i = 0; i < g->instance_count && d->all <= MOST_IN_PARTS; i++) {
+        const RtInstance *instance = &g->instances[i];
+        const RtAccel *part = d->layer->parts[instance->part];
+        d->to_world = rt_transform_compose(&instance->to_world, &outside);
+        for (int row = 0; row < 3; row++)
+            d->eye.at[row] = instance->columns[0][row] * eye.x + instance->columns[1][row] * eye.y +
+                             instance->columns[2][row] * eye.z + instance->columns[3][row];
+        if (part->ops->each_box) part->ops->each_box(part, (RtBoxViewer){show, d});
+        show_parts(d, instance->geometry, show);
+    }
+    d->to_world = outside;
+    d->eye = eye;
+}
+
+static void each_box(Drawing *d, void (*show)(void *, const RtBoxView *)) {
+    d->to_world = rt_transform_identity();
+    d->eye = d->view.eye;
+    d->layer->ops->each_box(d->layer, (RtBoxViewer){show, d});
+    if (d->parts) show_parts(d, &d->layer->scene->geometry, show);
+}
+
 /* ---- in perspective ---- */
 
 static RtVec3d project(const RtView *view, RtVec3d point) {
@@ -136,7 +169,8 @@ static bool is_hidden(const Drawing *d, double x, double y, double w) {
  * along it. */
 static void add_edge(void *context, RtVec3d from, RtVec3d to) {
     const Drawing *d = context;
-    RtVec3d a = project(&d->view, from), b = project(&d->view, to);
+    RtVec3d a = project(&d->view, rt_transform_pointd(&d->to_world, from)),
+            b = project(&d->view, rt_transform_pointd(&d->to_world, to));
     if (!clip(d, &a, &b)) return;
     double x = (a.x / a.z + 1) / 2 * d->width, y = (a.y / a.z + 1) / 2 * d->height;
     double dx = (b.x / b.z + 1) / 2 * d->width - x, dy = (b.y / b.z + 1) / 2 * d->height - y;
@@ -157,7 +191,7 @@ static void draw_box(void *context, const RtBoxView *view) {
     if (view->depth != d->level || !is_shown(d, view)) return;
     for (int pass = 0; pass < 2; pass++) {
         d->hidden = pass == 0;
-        rt_outline_edges(view, d->view.eye, (RtLineViewer){add_edge, d});
+        rt_outline_edges(view, d->eye, (RtLineViewer){add_edge, d});
         set_line(d, place_of_box(d, view), d->hidden ? 0.12 : 1);
         cairo_stroke(d->cairo);
     }
@@ -181,8 +215,7 @@ static RtStatus draw_perspective(Drawing *d, RtError *error) {
     RtStatus status = rt_paint_pixels(d->cairo, image, 0, 0, error);
     d->near = fmax(d->view.near, 1e-3 * rt_lengthd(rt_subd(rt_widen(camera->at), d->view.eye)));
     /* Small boxes are drawn last, in the middle of the thick lines of large ones that share their edges. */
-    for (d->level = d->first; status == RT_OK && d->level <= d->last; d->level++)
-        d->layer->ops->each_box(d->layer, (RtBoxViewer){draw_box, d});
+    for (d->level = d->first; status == RT_OK && d->level <= d->last; d->level++) each_box(d, draw_box);
     return status;
 }
 
@@ -340,7 +373,14 @@ RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame
                  .height = s->height,
                  .em = rt_font_size(width)};
     choose_section(&d);
-    layer->ops->each_box(layer, (RtBoxViewer){count_box, &d});
+    d.parts = !options->slice && layer->parts;
+    each_box(&d, count_box);
+    if (d.parts && d.all > MOST_IN_PARTS) {
+        d.parts = false;
+        d.all = d.drawn = 0;
+        d.least = d.most = 0;
+        each_box(&d, count_box);
+    }
     RT_TRY(rt_accel_check(layer, error));
     /* A floor much larger than the view should not determine the scale. */
     double view = rt_lengthd(rt_subd(rt_widen(camera->at), rt_widen(camera->from)));

@@ -5,11 +5,13 @@
 #include "render/illumination.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* ---- recording ---- */
 
 typedef struct Recorder {
     RtPath *path;
+    uint32_t place; /* where the ray is: index in path->places */
     RtStatus status;
     RtError *error;
 } Recorder;
@@ -41,10 +43,12 @@ static void find_span_of_ball(const RtRay *ray, RtPathRow *row) {
     row->leave = inside < 0 ? -(double)INFINITY : fmin((double)ray->tmax, nearest + half);
 }
 
-static void note_hit(RtPath *path, const RtTraced *event) {
+static void note_hit(RtPath *path, uint32_t place, const RtTraced *event) {
     for (uint32_t i = path->count; i-- > 0;) {
         RtPathRow *row = &path->rows[i];
-        if (row->kind != RT_TRACED_OBJECT_TEST || row->index != event->index || row->met) continue;
+        if (row->kind != RT_TRACED_OBJECT_TEST || row->place != place || row->index != event->index ||
+            row->met)
+            continue;
         row->met = true;
         row->t = event->t;
         return;
@@ -61,15 +65,56 @@ static RtStatus note_crossings(RtPath *path, const RtTraced *event, RtPathRow *r
     return RT_OK;
 }
 
+/* The row of its object test is the one before. A plugin's events may be anything. */
+static RtStatus enter(Recorder *recorder, uint32_t object) {
+    RtPath *path = recorder->path;
+    const RtPathPlace *outside = &path->places[recorder->place];
+    const RtGeometry *g = &outside->scene->geometry;
+    if (object >= g->object_count || !rt_is_instance(g, object) || path->count == 0) return RT_OK;
+    const RtInstance *instance = rt_instance_of(g, object);
+    RtPathPlace inside = {
+        .scene = path->places[0].scene->parts[instance->part],
+        .to_world = rt_transform_compose(&instance->to_world, &outside->to_world),
+        .first = outside->first + instance->first,
+        .part = instance->part,
+        .level = outside->level + 1,
+        .test = path->count - 1,
+    };
+    rt_instance_enter(instance, &outside->ray, &inside.ray);
+    recorder->place = path->place_count;
+    return rt_append(&path->places, &path->place_count, &path->place_capacity, &inside, sizeof inside,
+                     recorder->error);
+}
+
+/* The row of the instance's test tells what was found in it. */
+static void leave(Recorder *recorder, const RtTraced *event) {
+    if (recorder->place == 0) return;
+    RtPathRow *row = &recorder->path->rows[recorder->path->places[recorder->place].test];
+    recorder->place = row->place;
+    row->met = event->met;
+    row->t = event->t;
+}
+
+static const char *what_of(const RtTraced *event, const RtGeometry *g) {
+    if (event->kind == RT_TRACED_OBJECT_TEST ||
+        (event->kind == RT_TRACED_REPEAT_AVOIDED && event->index != RT_NO_OBJECT))
+        return event->index < g->object_count && rt_is_instance(g, event->index) ? "instance" : "object";
+    if (event->kind == RT_TRACED_ENTERED) return "part";
+    return event->what ? event->what : "";
+}
+
 static void record(void *context, const RtTraced *event) {
     Recorder *recorder = context;
     RtPath *path = recorder->path;
     if (recorder->status != RT_OK) return;
     rt_traced_count(event, &path->tally);
-    if (event->kind == RT_TRACED_OBJECT_HIT) {
-        note_hit(path, event);
-        return;
+    switch (event->kind) {
+    case RT_TRACED_OBJECT_HIT: note_hit(path, recorder->place, event); return;
+    case RT_TRACED_LEFT: leave(recorder, event); return;
+    case RT_TRACED_ENTERED: recorder->status = enter(recorder, event->index); break;
+    default: break;
     }
+    if (recorder->status != RT_OK) return;
     recorder->status = rt_reserve(&path->rows, &path->capacity, (uint64_t)path->count + 1, sizeof *path->rows,
                                   recorder->error);
     if (recorder->status != RT_OK) return;
@@ -79,6 +124,8 @@ static void record(void *context, const RtTraced *event) {
         row--;
     }
     *row = (RtPathRow){.kind = event->kind,
+                       .place = recorder->place,
+                       .level = path->places[recorder->place].level,
                        .index = event->index,
                        .leaf = event->leaf,
                        .empty = event->empty,
@@ -86,24 +133,25 @@ static void record(void *context, const RtTraced *event) {
                        .boxed = event->box && !rt_box_is_empty(*event->box),
                        .enter = INFINITY,
                        .leave = -INFINITY};
-    const bool object = event->kind == RT_TRACED_OBJECT_TEST ||
-                        (event->kind == RT_TRACED_REPEAT_AVOIDED && event->index != RT_NO_OBJECT);
-    snprintf(row->what, sizeof row->what, "%s", object ? "object" : event->what ? event->what : "");
+    if (event->kind == RT_TRACED_ENTERED) row->index = path->places[row->place].part;
+    snprintf(row->what, sizeof row->what, "%s", what_of(event, &path->places[row->place].scene->geometry));
     if (event->crossings) recorder->status = note_crossings(path, event, row, recorder->error);
     if (!event->box || !row->boxed) return;
     row->box = *event->box;
-    find_span(&path->ray, row);
+    const RtRay *ray = &path->places[row->place].ray;
+    find_span(ray, row);
     row->round = event->ball;
     if (!row->round) return;
     row->ball = *event->ball;
-    find_span_of_ball(&path->ray, row);
+    find_span_of_ball(ray, row);
 }
 
 static void find_nearest(RtPath *path) {
     float nearest = INFINITY;
     for (uint32_t i = 0; i < path->count; i++) {
         RtPathRow *row = &path->rows[i];
-        if (row->kind == RT_TRACED_OBJECT_TEST && row->met) nearest = rt_minf(row->t, nearest);
+        if (row->kind == RT_TRACED_OBJECT_TEST && row->met && strcmp(row->what, "object") == 0)
+            nearest = rt_minf(row->t, nearest);
         row->nearest = nearest;
     }
     if (path->any && path->hit.object != RT_NO_OBJECT) path->hit.t = nearest;
@@ -147,9 +195,12 @@ RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *
     *path = (RtPath){
         .ray = *ray, .accel = accel, .any = rt_ray_kind_is_any_hit((RtRayKind)ray->kind), .hit = RT_MISS};
     RT_TRY(rt_query_init(&query, accel, error));
-    RtStatus status = teach(accel, &query, &path->ray, error);
+    const RtPathPlace whole = {.ray = *ray, .scene = accel->scene, .to_world = rt_transform_identity()};
+    RtStatus status =
+        rt_append(&path->places, &path->place_count, &path->place_capacity, &whole, sizeof whole, error);
+    if (status == RT_OK) status = teach(accel, &query, &path->ray, error);
     if (status == RT_OK) {
-        Recorder recorder = {path, RT_OK, error};
+        Recorder recorder = {path, 0, RT_OK, error};
         rt_query_begin(&query);
         rt_trace_observer = &(RtTraceObserver){record, &recorder};
         /* Not rt_occluded, which does not name the occluder. */
@@ -167,10 +218,20 @@ RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *
 
 void rt_path_clear(RtPath *path) {
     rt_free(path->rows);
+    rt_free(path->places);
     rt_free(path->ends);
     path->rows = NULL;
+    path->places = NULL;
     path->ends = NULL;
     path->count = path->capacity = path->end_count = path->end_capacity = 0;
+    path->place_count = path->place_capacity = 0;
+}
+
+uint32_t rt_path_row_index(const RtPath *path, const RtPathRow *row) {
+    const RtPathPlace *place = &path->places[row->place];
+    const RtGeometry *g = &place->scene->geometry;
+    if (strcmp(row->what, "instance") == 0) return rt_ref_index(g->objects[row->index]);
+    return strcmp(row->what, "object") == 0 ? place->first + row->index : row->index;
 }
 
 bool rt_path_row_answers(const RtPathRow *row) {
@@ -193,14 +254,17 @@ const char *rt_path_row_name(const RtPathRow *row) {
                                                             [RT_TRACED_CSG_TEST] = "csg test",
                                                             [RT_TRACED_CSG_RESULT] = "csg result",
                                                             [RT_TRACED_REPEAT_AVOIDED] = "repeat avoided",
-                                                            [RT_TRACED_PASSED_ON] = "passed on"};
+                                                            [RT_TRACED_PASSED_ON] = "passed on",
+                                                            [RT_TRACED_ENTERED] = "entered"};
     if (row->kind != RT_TRACED_STEP) return names[row->kind];
     return row->empty ? "step, empty" : row->leaf ? "step, leaf" : "step";
 }
 
 uint32_t rt_path_run(const RtPath *path, uint32_t first) {
     uint32_t end = first;
-    while (end < path->count && path->rows[end].kind == RT_TRACED_OBJECT_TEST && !path->rows[end].met) end++;
+    while (end < path->count && path->rows[end].kind == RT_TRACED_OBJECT_TEST && !path->rows[end].met &&
+           path->rows[end].place == path->rows[first].place)
+        end++;
     return end - first >= 4 ? end - first : 1;
 }
 

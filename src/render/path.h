@@ -7,11 +7,25 @@
 #include "core/base/observe.h"
 #include "core/shape/shape.h"
 
+/* What rows are about: the scene, or the part of an instance that the ray entered. */
+typedef struct RtPathPlace {
+    RtRay ray;            /* moved into the part: t stays what it is */
+    const RtScene *scene; /* the part; borrowed */
+    RtTransform to_world;
+    uint32_t part;  /* its index in the scene */
+    uint32_t first; /* the id in the whole scene of object 0 there */
+    uint32_t level; /* instances around it; 0: the scene */
+    uint32_t test;  /* the row of the instance's object test, outside */
+} RtPathPlace;
+
 /* A row of the path. An object test and its hit are one row; that of a CSG tree follows the rows of its
  * parts. */
 typedef struct RtPathRow {
-    RtTracedKind kind;      /* never RT_TRACED_OBJECT_HIT */
-    char what[RT_MAX_NAME]; /* as in RtTraced; "object" for object tests; "": nothing */
+    RtTracedKind kind;      /* never RT_TRACED_OBJECT_HIT, RT_TRACED_LEFT */
+    uint32_t place;         /* index in path->places, of whose scene `index` and `box` are; "entered" is the
+                             * first row there, and its index the part */
+    uint32_t level;         /* of the place */
+    char what[RT_MAX_NAME]; /* as in RtTraced; "object" or "instance" for object tests; "": nothing */
     uint32_t index;         /* as in RtTraced */
     bool leaf, empty;       /* of a step */
     bool met;               /* extent test: something may be found there; object test: it is hit, at `t` */
@@ -36,6 +50,8 @@ typedef struct RtPath {
     RtTally tally;        /* sums over the rows, except `rays` and `hits`, from the kernel */
     RtPathRow *rows;
     uint32_t count, capacity;
+    RtPathPlace *places; /* the scene first */
+    uint32_t place_count, place_capacity;
     float *ends; /* t where the ray's line enters and leaves, alternately, a solid or a part of a CSG tree */
     uint32_t end_count, end_capacity;
 } RtPath;
@@ -50,6 +66,10 @@ RtStatus rt_path_available(const RtAccel *accel, const char *spec, RtError *erro
  * the kernel's counts, which would be a bug in this program. */
 RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *error);
 void rt_path_clear(RtPath *path);
+
+/* The index of a row for people: of an object in a part, its id in the whole scene; of an instance, its
+ * number among those of its scene. */
+uint32_t rt_path_row_index(const RtPath *path, const RtPathRow *row);
 
 /* Whether `met` is known: not of other events, nor of an extent test that a plugin did not show. */
 bool rt_path_row_answers(const RtPathRow *row);

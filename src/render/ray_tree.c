@@ -163,7 +163,7 @@ void rt_tree_ray_hit(const RtTreeRay *ray, const RtScene *scene, char out[RT_TRE
     }
     const RtMaterial *m = ray->surface.material;
     snprintf(out, RT_TREE_HIT_TEXT, "object %u, %s", object,
-             rt_shape_name(rt_ref_shape(scene->geometry.objects[object])));
+             rt_shape_name(rt_geometry_shape(&scene->geometry, object)));
     if (shadow) rt_append_text(out, RT_TREE_HIT_TEXT, ": in shadow");
     if (m && m->name[0]) rt_append_text(out, RT_TREE_HIT_TEXT, ", %s", m->name);
     if (m && !ray->surface.entering) rt_append_text(out, RT_TREE_HIT_TEXT, ", from inside");

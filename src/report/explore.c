@@ -118,8 +118,8 @@ static RtStatus embed_image(RtAccel *accel, uint32_t depth, FILE *out, RtError *
 /* A byte each: the shape of object 0, 1, ... */
 static RtStatus embed_shapes(const RtGeometry *g, FILE *out, RtError *error) {
     RtBytes bytes = {0};
-    for (uint32_t i = 0; i < g->object_count; i++)
-        rt_bytes_put_number(&bytes, (uint64_t)rt_ref_shape(g->objects[i]));
+    for (uint32_t i = 0; i < rt_geometry_id_count(g); i++)
+        rt_bytes_put_number(&bytes, (uint64_t)rt_geometry_shape(g, i));
     return embed(&bytes, "shapes", out, error);
 }
 
@@ -142,7 +142,13 @@ static RtStatus embed_accelerator(const RtRecordedPaths *paths, uint32_t number,
 
 static RtStatus write_page(FILE *out, const char *name, const RtRecordedPixels *recording,
                            const RtExploredSpec *specs, const RtExploreOptions *options, RtError *error) {
-    const RtScene *scene = recording->of[0].accel->scene;
+    const RtScene *whole = recording->of[0].accel->scene, *scene = whole;
+    RT_OWNED(RtScene, copies, rt_scene_clear);
+    /* Instances that cannot be copied are shown as boxes. */
+    if (whole->geometry.instance_count > 0 && rt_scene_flatten(whole, &copies, NULL) == RT_OK) {
+        copies.sampling = whole->sampling;
+        scene = &copies;
+    }
     json_t *accelerators = json_array();
     RtBytes objects = {0};
     RtStatus status = RT_OK;
@@ -167,7 +173,7 @@ static RtStatus write_page(FILE *out, const char *name, const RtRecordedPixels *
         json_decref(accelerators);
     rt_bytes_embed(&recording->rays, "rays", out);
     if (status == RT_OK) status = embed_image(recording->of[0].accel, options->depth, out, error);
-    if (status == RT_OK) status = embed_shapes(&scene->geometry, out, error);
+    if (status == RT_OK) status = embed_shapes(&whole->geometry, out, error);
     if (status == RT_OK) status = embed(&objects, "objects", out, error);
     rt_bytes_clear(&objects);
     fputs("</main>\n<script type=\"module\">\n", out);

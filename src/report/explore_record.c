@@ -260,7 +260,7 @@ enum { MOST_CANDIDATES = 16, RAW_PER_BYTE = 3 }; /* base64 of compressed data is
 
 static bool same_form(const RtPathRow *a, const RtPathRow *b) {
     return a->kind == b->kind && strcmp(a->what, b->what) == 0 && a->leaf == b->leaf &&
-           a->empty == b->empty && a->met == b->met && a->round == b->round;
+           a->empty == b->empty && a->met == b->met && a->round == b->round && a->level == b->level;
 }
 
 static RtStatus find_form(RtRecordedPaths *to, const RtPathRow *row, uint32_t *form, RtError *error) {
@@ -291,13 +291,15 @@ static RtStatus grow_slots(RtRecordedPaths *to, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus find_event(RtRecordedPaths *to, const RtPathRow *row, uint32_t *index, RtError *error) {
+static RtStatus find_event(RtRecordedPaths *to, const RtPath *path, const RtPathRow *row, uint32_t *index,
+                           RtError *error) {
+    const RtPathPlace *place = &path->places[row->place];
     RtEvent event;
     memset(&event, 0, sizeof event);
     RT_TRY(find_form(to, row, &event.form, error));
-    event.index = row->index;
+    event.index = rt_path_row_index(path, row);
     event.boxed = row->boxed;
-    if (row->boxed) event.box = row->box;
+    if (row->boxed) event.box = row->level ? rt_moved_box(&row->box, &place->to_world) : row->box;
     RT_TRY(grow_slots(to, error));
     uint32_t *slot = find_slot(to, &event);
     if (*slot == 0) {
@@ -315,7 +317,7 @@ static bool is_hit(const RtPathRow *row) {
 static json_t *counts_of(const RtPathRow *row) {
     RtTally tally = {0};
     rt_traced_count(&(RtTraced){.kind = row->kind, .leaf = row->leaf, .empty = row->empty}, &tally);
-    tally.object_hits += is_hit(row);
+    tally.object_hits += is_hit(row) && strcmp(row->what, "object") == 0;
     json_t *names = json_array();
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
         if (rt_tally_get(&tally, i)) json_array_append_new(names, json_string(rt_tally_name(i)));
@@ -327,10 +329,11 @@ json_t *rt_recorded_forms(const RtRecordedPaths *paths) {
     json_t *forms = json_array();
     for (uint32_t i = 0; i < paths->form_count; i++) {
         const RtPathRow *row = &paths->forms[i];
-        json_array_append_new(
-            forms, json_pack("{s:s, s:s, s:o, s:b, s:b, s:o}", "name", rt_path_row_name(row), "of", row->what,
-                             "met", rt_path_row_answers(row) ? json_boolean(row->met) : json_null(), "hit",
-                             is_hit(row), "round", row->round, "counts", counts_of(row)));
+        json_array_append_new(forms,
+                              json_pack("{s:s, s:s, s:i, s:o, s:b, s:b, s:o}", "name", rt_path_row_name(row),
+                                        "of", row->what, "level", (int)row->level, "met",
+                                        rt_path_row_answers(row) ? json_boolean(row->met) : json_null(),
+                                        "hit", is_hit(row), "round", row->round, "counts", counts_of(row)));
     }
     return forms;
 }
@@ -379,7 +382,7 @@ static RtStatus put_path(RtRecordedPixels *recording, RtRecordedPaths *to, const
     recording->cut_count += kept < path->count;
     for (uint32_t i = 0; i < kept; i++) {
         uint32_t event;
-        RT_TRY(find_event(to, &path->rows[i], &event, error));
+        RT_TRY(find_event(to, path, &path->rows[i], &event, error));
         rt_bytes_put_number(&to->paths, event);
         if (is_hit(&path->rows[i])) put_float(&to->paths, path->rows[i].t);
     }

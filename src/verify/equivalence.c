@@ -163,7 +163,8 @@ RtStatus rt_reference_certain(const RtReference *reference, bool absolute, int t
                               RtError *error) {
     const RtGeometry *g = &reference->scene->geometry;
     uint64_t solids = g->csg_count > 0 ? g->forest.set.solid_count / g->csg_count : 0;
-    uint64_t most = CERTAIN_WORK / (g->object_count + WORK_PER_SOLID * solids + 1);
+    if (g->part_crossings / 4 > solids) solids = g->part_crossings / 4; /* at most 4 in a solid */
+    uint64_t most = CERTAIN_WORK / (rt_geometry_id_count(g) + WORK_PER_SOLID * solids + 1);
     if (most < FEWEST_SAMPLED) most = FEWEST_SAMPLED;
     CertainJob job = {.reference = reference, .absolute = absolute, .stride = reference->count / most + 1};
     job.count = (reference->count + job.stride - 1) / job.stride;

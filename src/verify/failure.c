@@ -94,10 +94,12 @@ RtStatus rt_failure_of(const RtReference *reference, const RtWrongAnswer *wrong,
 
 /* ---- recorded answers ---- */
 
+enum { MOST_OBJECTS = 20000 }; /* of a scene that is stored in a file, or copied from instances */
+
 static RtStatus find_near(const RtScene *scene, const RtWrongAnswer *wrong, uint32_t *ids, uint32_t *count,
                           RtError *error) {
     const RtJudge judge = rt_judge(&scene->geometry, &wrong->ray, false);
-    for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
+    for (uint32_t id = 0; id < rt_geometry_id_count(&scene->geometry); id++) {
         RtMargin margin;
         RT_TRY(rt_margin_of(&judge.margin, judge.geometry, id, NAN, &margin, error));
         if (margin.possible || id == wrong->expected.object || id == wrong->got.object) ids[(*count)++] = id;
@@ -108,15 +110,20 @@ static RtStatus find_near(const RtScene *scene, const RtWrongAnswer *wrong, uint
 RtStatus rt_near_save(const RtScene *scene, const RtWrongAnswer *wrong, const char *path, uint32_t *count,
                       RtError *error) {
     RT_ARENA(memory);
+    RT_OWNED(RtScene, flat, rt_scene_clear);
     RT_OWNED(RtScene, part, rt_scene_clear);
     RtOutput output;
     char says[512];
-    uint32_t *ids = rt_arena_alloc(&memory, scene->geometry.object_count, sizeof(uint32_t));
+    const uint32_t all = rt_geometry_id_count(&scene->geometry);
+    const bool copied = scene->geometry.instance_count > 0;
+    RtError why;
     *count = 0;
+    if (copied && (all > MOST_OBJECTS || rt_scene_flatten(scene, &flat, &why) != RT_OK)) return RT_OK;
+    uint32_t *ids = rt_arena_alloc(&memory, all, sizeof(uint32_t));
     RT_TRY(rt_arena_check(&memory, "ids of objects", error));
     RT_TRY(find_near(scene, wrong, ids, count, error));
     if (*count == 0) return RT_OK;
-    RT_TRY(rt_scene_subset(scene, ids, *count, &part, error));
+    RT_TRY(rt_scene_subset(copied ? &flat : scene, ids, *count, &part, error));
     RT_TRY(rt_output_open(&output, path, error));
     rt_wrong_answer_format(wrong, says, sizeof says);
     fprintf(output.file, "# %s\n# Objects near the ray:", says);
@@ -251,7 +258,6 @@ RtStatus rt_shrink(const RtScene *scene, const RtFailure *failure, const RtAnswe
 
 enum {
     MOST_BYTES = 1 << 30, /* of a replay file */
-    MOST_OBJECTS = 20000, /* of a scene that is stored in the file */
     NUMBERS = 8           /* of a ray: org, dir, tmin, tmax */
 };
 

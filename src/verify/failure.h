@@ -45,7 +45,8 @@ RtStatus rt_failure_of(const RtReference *reference, const RtWrongAnswer *wrong,
 
 /* Nothing can be repeated for a wrong answer of rt_equivalence_judge. Writes the objects near its ray, those
  * that rounding lets it hit and both of the answers, to a scene file, a .yaml, whose first lines say what it
- * is; *count: their number. 0: there is none, and no file. */
+ * is; *count: their number. 0: there is none, and no file. Objects of instances become copies, if they can;
+ * otherwise there is none. */
 RtStatus rt_near_save(const RtScene *scene, const RtWrongAnswer *wrong, const char *path, uint32_t *count,
                       RtError *error);
 

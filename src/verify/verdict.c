@@ -21,6 +21,7 @@ const char *rt_fault_name(RtFault fault) {
 
 /* The margins of all objects on a ray. */
 typedef struct Margins {
+    uint32_t except;        /* is left out */
     bool possible;          /* any object is */
     uint32_t first_certain; /* the certain object with the least `latest`, or RT_NO_OBJECT */
     double latest;
@@ -29,8 +30,10 @@ typedef struct Margins {
     double earliest, next_earliest;
 } Margins;
 
-static void add(Margins *all, uint32_t id, const RtMargin *m) {
-    all->possible |= m->possible;
+static void add(void *context, uint32_t id, const RtMargin *m) {
+    Margins *all = context;
+    if (id == all->except) return;
+    all->possible = true;
     if (m->certain && m->latest < all->latest) {
         all->first_certain = id;
         all->latest = m->latest;
@@ -46,19 +49,13 @@ static void add(Margins *all, uint32_t id, const RtMargin *m) {
 
 /* The margins of all objects but `except`. */
 static RtStatus margins(const RtJudge *judge, uint32_t except, Margins *all, RtError *error) {
-    const RtGeometry *g = judge->geometry;
-    *all = (Margins){.first_certain = RT_NO_OBJECT,
+    *all = (Margins){.except = except,
+                     .first_certain = RT_NO_OBJECT,
                      .latest = HUGE_VAL,
                      .first_possible = RT_NO_OBJECT,
                      .earliest = HUGE_VAL,
                      .next_earliest = HUGE_VAL};
-    for (uint32_t id = 0; id < g->object_count; id++) {
-        RtMargin m;
-        if (id == except) continue;
-        RT_TRY(rt_margin_of(&judge->margin, g, id, NAN, &m, error));
-        add(all, id, &m);
-    }
-    return RT_OK;
+    return rt_margin_of_all(&judge->margin, judge->geometry, NAN, add, all, error);
 }
 
 RtStatus rt_verdict_certain(RtJudge judge, bool *certain, bool *must_hit, RtError *error) {
@@ -74,7 +71,7 @@ RtStatus rt_verdict_certain(RtJudge judge, bool *certain, bool *must_hit, RtErro
 
 /* delta / |dir| of the object that an answer names; 0 if it names none. */
 static double tolerance_of(const RtJudge *judge, RtHit hit) {
-    if (hit.object >= judge->geometry->object_count) return 0;
+    if (hit.object >= rt_geometry_id_count(judge->geometry)) return 0;
     return rt_margin_delta(&judge->margin, judge->geometry, hit.object) / judge->margin.line.length;
 }
 
@@ -102,20 +99,21 @@ RtStatus rt_verdict_side(RtJudge judge, RtHit expected, RtHit answer, RtSide *si
     return *side == RT_SIDE_UNDECIDED ? lack_memory(error) : RT_OK;
 }
 
+/* Keeps the first object that may be hit there, or the one that is expected. */
+static void name_first(void *context, uint32_t id, const RtMargin *m) {
+    uint32_t *name = context;
+    if (m->holds && *name == RT_UNNAMED_OBJECT) *name = id;
+}
+
 RtStatus rt_verdict_name_object(RtJudge judge, RtHit expected, RtHit *answer, RtError *error) {
-    const uint32_t count = judge.geometry->object_count;
+    const bool known = expected.object < rt_geometry_id_count(judge.geometry);
+    const double asked = (double)answer->t * judge.margin.line.length;
+    RtMargin own = {.holds = false};
     if (answer->object != RT_UNNAMED_OBJECT) return RT_OK;
-    if (expected.object < count) answer->object = expected.object;
-    for (uint32_t i = 0; i <= count; i++) {
-        const uint32_t id = i == 0 ? expected.object : i - 1;
-        RtMargin own;
-        if (id >= count) continue;
-        RT_TRY(rt_margin_of(&judge.margin, judge.geometry, id, (double)answer->t * judge.margin.line.length,
-                            &own, error));
-        if (!own.holds) continue;
-        answer->object = id;
-        return RT_OK;
-    }
+    if (known) RT_TRY(rt_margin_of(&judge.margin, judge.geometry, expected.object, asked, &own, error));
+    if (!own.holds)
+        RT_TRY(rt_margin_of_all(&judge.margin, judge.geometry, asked, name_first, &answer->object, error));
+    if (known && answer->object == RT_UNNAMED_OBJECT) answer->object = expected.object;
     return RT_OK;
 }
 
@@ -128,7 +126,7 @@ RtStatus rt_verdict_nearest(RtJudge judge, RtHit expected, RtHit answer, RtVerdi
     if (miss && expected.object == RT_NO_OBJECT) return RT_OK;
     *verdict = RT_WRONG;
     if (!miss) {
-        if (answer.object >= judge.geometry->object_count) return RT_OK;
+        if (answer.object >= rt_geometry_id_count(judge.geometry)) return RT_OK;
         RT_TRY(rt_margin_of(&judge.margin, judge.geometry, answer.object, asked, &own, error));
         if (!own.holds) return RT_OK;
     }
@@ -148,7 +146,7 @@ RtStatus rt_verdict_fault(RtJudge judge, RtHit answer, RtFault *fault, RtError *
     RtMargin own = {0};
     *fault = RT_FAULT_LOST;
     if (answer.object == RT_NO_OBJECT) return RT_OK;
-    if (answer.object < judge.geometry->object_count)
+    if (answer.object < rt_geometry_id_count(judge.geometry))
         RT_TRY(rt_margin_of(&judge.margin, judge.geometry, answer.object,
                             (double)answer.t * judge.margin.line.length, &own, error));
     *fault = own.holds      ? RT_FAULT_BEHIND

@@ -61,12 +61,7 @@ static RtStatus load_recorded(Run *run, RtError *error) {
     const RtVerify *v = run->verify;
     for (uint32_t i = 0; i < v->spec_count; i++) {
         if (!v->specs[i].recorded) continue;
-        if (run->scenes[0].geometry.instance_count > 0)
-            return rt_fail(error, RT_BAD_INPUT,
-                           "%s: recorded hits are judged on scenes without instances: `raytally convert "
-                           "--flatten` writes one of copies",
-                           run->verify->scenes[0]);
-        RT_TRY(rt_hits_load(v->specs[i].spec, v->rays.count, run->scenes[0].geometry.object_count,
+        RT_TRY(rt_hits_load(v->specs[i].spec, v->rays.count, rt_geometry_id_count(&run->scenes[0].geometry),
                             &run->recorded, error));
         for (uint64_t k = 0; k < v->rays.count; k++) {
             if (run->recorded[k].object != RT_UNNAMED_OBJECT) continue;
@@ -226,7 +221,7 @@ static RtStatus keep_failure(Run *run, const RtVerifyScene *scene, const RtVerif
                              const RtWrongAnswer *wrong, json_t *row, RtError *error) {
     RtFailure failure;
     RtAnswer answer;
-    RtShrunk shrunk = {.count = scene->scene.geometry.object_count};
+    RtShrunk shrunk = {.count = rt_geometry_id_count(&scene->scene.geometry)};
     const bool whole = scene->scene.geometry.instance_count > 0; /* objects of parts cannot be left out */
     uint64_t budget = whole ? 0 : shrink_budget(run, spec->spec);
     char path[RT_MAX_PATH];

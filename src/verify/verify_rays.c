@@ -364,9 +364,15 @@ static RtRay in_plane(Generator *m) {
     return ray_along(p, dir);
 }
 
-/* Along an edge: from a vertex, before it, or between two. */
+/* Along an edge, perhaps in instances: from a vertex, before it, or between two. */
 static RtRay along_edge(Generator *m) {
     const RtGeometry *g = m->geometry;
+    RtTransform to_world = rt_transform_identity();
+    while (g->instance_count > 0 && (g->triangle_count + g->polygon_count == 0 || below(m, 4))) {
+        const RtInstance *instance = &g->instances[below(m, g->instance_count)];
+        to_world = rt_transform_compose(&instance->to_world, &to_world);
+        g = instance->geometry;
+    }
     if (g->triangle_count + g->polygon_count == 0) return along_axis(m);
     uint32_t i = below(m, g->triangle_count + g->polygon_count), count = 3;
     const RtVec3 *v;
@@ -378,10 +384,11 @@ static RtRay along_edge(Generator *m) {
         count = polygon->count;
     }
     uint32_t first = below(m, count);
-    RtVec3 dir = rt_sub(v[(first + 1) % count], v[first]);
+    const RtVec3d at = rt_transform_pointd(&to_world, rt_widen(v[first])),
+                  next = rt_transform_pointd(&to_world, rt_widen(v[(first + 1) % count])),
+                  dir = rt_widen(rt_sub(rt_narrow(next), rt_narrow(at)));
     static const double starts[] = {0, -1, -4, 0.5, 1};
-    RtVec3d from = rt_add_scaledd(rt_widen(v[first]), rt_widen(dir), starts[below(m, 5)]);
-    return ray_along(from, rt_widen(dir));
+    return ray_along(rt_add_scaledd(rt_widen(rt_narrow(at)), dir, starts[below(m, 5)]), dir);
 }
 
 /* Nearly parallel to a flat object or to the silhouette of a round one, by an angle of 1e-2 to 1e-8. */

@@ -143,6 +143,22 @@ RT_TEST(an_occluder_that_is_not_named_has_no_number) {
     }
 }
 
+RT_TEST(rows_inside_an_instance_are_indented_and_name_the_part_and_ids_of_the_whole_scene) {
+    static const char ray[] = "balls:size=2,instances=on --size 64x64 --pixel 32,32";
+    assert_said(trace(ray), 0, OUT ".txt", "    entered           part ");
+    assert_true(says(OUT ".txt", "instances_entered"));
+    json_auto_t *path = path_of(ray);
+    json_int_t levels = 0;
+    size_t i;
+    json_t *row;
+    json_array_foreach(json_object_get(path, "rows"), i, row) {
+        const json_int_t level = json_integer_value(json_object_get(row, "level"));
+        if (level > levels) levels = level;
+    }
+    assert_int_equal(levels, 3);
+    assert_int_equal(rows_of(path, "entered"), count_of(path, "instances_entered"));
+}
+
 RT_TEST(many_object_tests_that_miss_are_one_row_unless_each_is_asked_for) {
     assert_said(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel brute"), 0, OUT ".txt", "all missed");
     assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel brute --rows 0"), 0);

@@ -67,6 +67,36 @@ RT_TEST(what_happens_to_a_ray_adds_up_to_its_tally_for_every_accelerator_at_ever
     }
 }
 
+RT_TEST(a_path_inside_instances_adds_up_and_has_the_rows_of_each_level) {
+    static const char *const specs[] = {"bvh",           "grid", "wide", "kd/octree", "extents/clusters",
+                                        "cache+bvh/grid"};
+    OWNED_SCENE scene = open_scene("balls:size=3,instances=on");
+    uint32_t compared[RT_RAY_KIND_COUNT] = {0};
+    assert_ok(rt_scene_sample(&scene, 32, 32, 1, false, error));
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        OWNED_ACCEL RtAccel *accel = open_accel(&scene, specs[i]);
+        OWNED(rt_path_clear) RtPath path;
+        RtRay ray;
+        assert_paths_add_up(accel, specs[i], compared);
+        assert_ok(rt_path_ray(accel, RT_RAY_PRIMARY, 16, 16, 0, &ray, error));
+        assert_ok(rt_path_trace(&path, accel, &ray, error));
+        uint32_t entered = 0, levels = 0;
+        for (uint32_t k = 0; k < path.count; k++) {
+            const RtPathRow *row = &path.rows[k];
+            const bool object = row->kind == RT_TRACED_OBJECT_TEST && strcmp(row->what, "object") == 0;
+            entered += row->kind == RT_TRACED_ENTERED;
+            if (row->level > levels) levels = row->level;
+            if (object && row->met && rt_path_row_index(&path, row) == path.hit.object) {
+                assert_true(row->level > 0 && row->t == path.hit.t && row->nearest == row->t);
+                assert_true(row->enter <= (double)row->t && (double)row->t <= row->leave);
+                levels |= 0x100; /* found */
+            }
+        }
+        assert_int_equal(entered, path.tally.instances_entered);
+        assert_true(levels >= 0x102 && path.place_count == entered + 1);
+    }
+}
+
 /* `path` along three unit cubes' worth of spheres in a row, seen from the left, at a height `up` above their
  * centres. */
 #define PATH_ALONG_THE_ROW(spec, up)                                                                         \
@@ -212,8 +242,12 @@ RT_TEST(an_axis_has_few_ticks_also_where_the_rows_are_far_away_and_of_no_length)
                          .box = {{{1, -1, -1}}, {{2, 1, 1}}},
                          .enter = far,
                          .leave = nextafter(far, INFINITY)};
-        RtPath path = {
-            .ray = {.dir = {{1, 0, 0}}, .tmax = INFINITY}, .hit = RT_MISS, .rows = &row, .count = 1};
+        RtPathPlace whole = {.scene = &scene};
+        RtPath path = {.ray = {.dir = {{1, 0, 0}}, .tmax = INFINITY},
+                       .hit = RT_MISS,
+                       .rows = &row,
+                       .count = 1,
+                       .places = &whole};
         assert_ok(rt_path_draw(&path, &scene, "title \xff", "spec", PICTURE_FILE, error));
         OWNED_IMAGE image = read_picture();
         uint32_t ticks = 0;
@@ -234,8 +268,12 @@ RT_TEST(a_path_is_drawn_large_where_objects_are_tested) {
          .enter = 50,
          .leave = 51},
         {.kind = RT_TRACED_OBJECT_TEST, .what = "object", .met = true, .t = 50.5f}};
-    RtPath path = {
-        .ray = {.dir = {{1, 0, 0}}, .tmax = INFINITY}, .hit = {50.5f, 0}, .rows = rows, .count = 3};
+    RtPathPlace whole = {.scene = &scene};
+    RtPath path = {.ray = {.dir = {{1, 0, 0}}, .tmax = INFINITY},
+                   .hit = {50.5f, 0},
+                   .rows = rows,
+                   .count = 3,
+                   .places = &whole};
     rows[1].leaf = true;
     for (int i = 0; i < 3; i++) rows[i].nearest = i == 2 ? 50.5f : INFINITY;
     assert_ok(rt_path_draw(&path, &scene, "title", "spec", PICTURE_FILE, error));

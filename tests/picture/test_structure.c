@@ -68,6 +68,31 @@ RT_TEST(the_root_box_is_drawn_where_the_camera_sees_it) {
     assert_ok(draw(&scene, "bvh", RT_ALL_LEVELS, &image, error));
 }
 
+RT_TEST(boxes_of_parts_are_drawn_in_each_of_their_instances) {
+    OWNED_SCENE part = start_scene(rt_default_material()), scene = start_scene(rt_default_material());
+    assert_ok(rt_scene_add_sphere(&part, 0, rt_vec3(0, 0, 0), 0.5f, error));
+    assert_ok(rt_scene_add_sphere(&part, 0, rt_vec3(2, 0, 0), 0.5f, error));
+    assert_ok(rt_scene_add_part(&scene, &part, error));
+    for (int i = 0; i < 2; i++) {
+        RtTransform place = rt_transform_identity();
+        assert_ok(rt_transform_translate(&place, rt_vec3(-1, i ? 2 : -2, 0), error));
+        assert_ok(rt_scene_add_instance(&scene, &scene, 0, &place, RT_OWN_MATERIALS, error));
+    }
+    scene.camera.fov = 45;
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_ok(rt_scene_sample(&scene, SIDE, SIDE, 1, false, error));
+    OWNED_IMAGE image = {0};
+    assert_ok(draw(&scene, "extents", RT_ALL_LEVELS, &image, error));
+    const double scale = 100 / tan(45 * 3.14159265358979 / 360) / 9.5; /* at the near faces */
+    for (int i = 0; i < 4; i++) { /* the outer side of each sphere's box, halfway up */
+        const int x = (int)floor(100 + (i % 2 ? 1.5 : -1.5) * scale),
+                  y = (int)floor(100 + (i / 2 ? 2 : -2) * scale);
+        assert_true(ink_at(&image, x, y) > 100);
+    }
+    const int inner = (int)floor(100 + 0.5 * scale); /* inside the instances' boxes: from the part alone */
+    assert_true(ink_at(&image, inner, (int)floor(100 + 2 * scale)) > 30);
+}
+
 RT_TEST(boxes_behind_what_is_seen_are_faint) {
     OWNED_IMAGE image = {0};
     OWNED_SCENE scene = five_balls();

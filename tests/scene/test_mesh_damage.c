@@ -365,7 +365,8 @@ RT_TEST(deeply_nested_gltf_is_refused) {
     assert_bad_input(load_bytes("gltf", text, sizeof text, &scene, error), "maximum parsing depth reached");
 }
 
-/* Each of `nodes` places `nodes` primitives, of a triangle each, that share as many vertices. */
+/* Each of `nodes` places `nodes` primitives, of a triangle each, that share as many vertices; mirrored, so
+ * that they become no instances. */
 static RtStatus load_repeated(int nodes, RtScene *scene, RtError *problem) {
     static char text[100000];
     size_t size = (size_t)sprintf(text, "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[");
@@ -373,7 +374,7 @@ static RtStatus load_repeated(int nodes, RtScene *scene, RtError *problem) {
     for (int i = 0; i < nodes; i++) size += (size_t)sprintf(text + size, "%s" item, i ? "," : "", i)
     REPEAT("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"extras\":%d}");
     size += (size_t)sprintf(text + size, "]}],\"nodes\":[");
-    REPEAT("{\"mesh\":0,\"extras\":%d}");
+    REPEAT("{\"mesh\":0,\"scale\":[-1,1,1],\"extras\":%d}");
     size += (size_t)sprintf(text + size, "],\"scenes\":[{\"nodes\":[");
     REPEAT("%d");
     size += (size_t)sprintf(

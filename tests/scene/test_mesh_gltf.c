@@ -404,6 +404,45 @@ RT_TEST(joints_that_do_not_exist_are_refused) {
     SCENE "[{'mesh':0,'translation':[0,0,1],'extensions':{'EXT_mesh_gpu_instancing':{'attributes':"          \
           "{" attributes "}}}}]," MESH("}")
 
+/* A strip of 100 triangles, placed by two nodes, one of them mirrored, and by a third in two instances. */
+static RtScene read_repeated(const char *path) {
+    float strip[102 * 3] = {0};
+    for (int i = 0; i < 102; i++) strip[3 * i] = (float)(i / 2), strip[3 * i + 1] = (float)(i % 2);
+    const Numbers numbers[] = {
+        {.type = 5126, .shape = "VEC3", .count = 102, .data = strip, .size = sizeof strip},
+        {FLOATS("VEC3", 2, 0, 0, 5, 0, 0, 7)}};
+    RtScene scene;
+    write_document(
+        "'scenes':[{'nodes':[0,1,2]}],'nodes':[{'mesh':0},{'mesh':0,'scale':[1,1,-1]},{'mesh':0,"
+        "'scale':[2,2,2],'extensions':{'EXT_mesh_gpu_instancing':{'attributes':{'TRANSLATION':1}}}}],"
+        "'meshes':[{'primitives':[{'attributes':{'POSITION':0},'mode':5}]}]",
+        numbers, 2);
+    assert_ok(rt_scene_open(path, &scene, error));
+    return scene;
+}
+
+RT_TEST(a_large_mesh_that_is_placed_several_times_becomes_instances) {
+    OWNED_SCENE scene = read_repeated(NAME);
+    assert_int_equal(scene.part_count, 1);
+    assert_int_equal(scene.parts[0]->geometry.triangle_count, 100);
+    assert_int_equal(scene.geometry.instance_count, 3);
+    assert_int_equal(scene.geometry.triangle_count, 100); /* the mirrored one */
+    assert_true(scene.geometry.instances[2].to_world.m[2][3] == 14);
+    /* The same with copies: as an object of another scene. */
+    static const char within[] = "objects: [mesh: {path: test_mesh_gltf.gltf}]\n";
+    write_text(RT_BINARY_DIR "/test_mesh_gltf.yaml", within);
+    OWNED_SCENE copies = read_repeated(RT_BINARY_DIR "/test_mesh_gltf.yaml"), flat;
+    assert_int_equal(copies.geometry.triangle_count, 400);
+    assert_ok(rt_scene_flatten(&scene, &flat, error));
+    assert_int_equal(flat.geometry.triangle_count, 400);
+    for (int i = 0; i < 300;
+         i++) { /* in the file's order, but the mirrored one, which comes first, is second */
+        const int there = i < 100 ? 100 + i : i < 200 ? i - 100 : i;
+        assert_memory_equal(&flat.geometry.triangles[i], &copies.geometry.triangles[there],
+                            sizeof(RtTriangle));
+    }
+}
+
 /* The second is moved by x = 5; turned by 90 degrees about z, in bytes whose square is a little less than 1;
  * and mirrored, so that its triangle keeps its front. */
 RT_TEST(instances_of_a_mesh_become_copies) {

@@ -161,7 +161,10 @@ RT_TEST(objects_are_as_many_as_told_beforehand_and_take_no_more_memory_than_esti
                                        "city:size=1,instances=on,parts=1",
                                        "forest:n=300,instances=on",
                                        "forest:n=9,instances=flattened,parts=2",
-                                       "forest:n=1,instances=on,parts=64"};
+                                       "forest:n=1,instances=on,parts=64",
+                                       "thicket:n=9,instances=on",
+                                       "thicket:n=9,instances=on,opened=2",
+                                       "thicket:n=2,instances=flattened,opened=1"};
     enum { MORE = sizeof more / sizeof more[0] };
     for (size_t i = 0; i < MORE || rt_builtin_at(i - MORE); i++) {
         const char *spec = i < MORE ? more[i] : rt_builtin_at(i - MORE)->name;

@@ -20,7 +20,9 @@ void rt_traced_count(const RtTraced *event, RtTally *tally) {
     case RT_TRACED_CSG_TEST: tally->csg_tests++; break;
     case RT_TRACED_REPEAT_AVOIDED: tally->repeats_avoided++; break;
     case RT_TRACED_PASSED_ON: tally->passed_on++; break;
+    case RT_TRACED_ENTERED: tally->instances_entered++; break;
     case RT_TRACED_CSG_RESULT:
+    case RT_TRACED_LEFT:
     case RT_TRACED_KIND_COUNT: break;
     }
 }

@@ -22,6 +22,8 @@ typedef enum RtTracedKind {
     RT_TRACED_CSG_RESULT,     /* `crossings` with the result of an operation of that tree; not counted */
     RT_TRACED_REPEAT_AVOIDED, /* a mailbox skipped object `index` */
     RT_TRACED_PASSED_ON,      /* an overlay passes the ray to the accelerator below */
+    RT_TRACED_ENTERED,        /* instance `index` is entered: the next events, up to LEFT, are of its part */
+    RT_TRACED_LEFT,           /* and left, `met` at `t`; not counted */
     RT_TRACED_KIND_COUNT
 } RtTracedKind;
 

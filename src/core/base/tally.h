@@ -13,6 +13,11 @@
 
 /* X(name, meaning) */
 #define RT_TALLY_COUNTERS(X)                                                                                 \
+    RT_OLD_TALLY_COUNTERS(X)                                                                                 \
+    X(instances_entered, "rays moved into a part, after the object test of its instance")
+
+/* Those that results of every version have. */
+#define RT_OLD_TALLY_COUNTERS(X)                                                                             \
     X(rays, "rays traced")                                                                                   \
     X(hits, "rays that hit an object")                                                                       \
     X(object_tests,                                                                                          \

@@ -65,8 +65,8 @@ static RtStatus fail_empty(const RtMeshReader *r) {
         warned ? warnings->list[warnings->first].message : "");
 }
 
-RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
-                        RtError *error) {
+static RtStatus append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
+                       bool whole, RtError *error) {
     RtError own;
     char *data;
     size_t size, number;
@@ -75,6 +75,7 @@ RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, con
     RtMeshReader r = {.text = {.path = path, .error = error ? error : &own},
                       .scene = scene,
                       .material = material,
+                      .whole = whole,
                       .transform = transform ? *transform : rt_transform_identity()};
     for (int a = 0; a < 3; a++) r.transform.m[a][3] -= scene->offset.at[a];
     r.textured = scene->materials[material].texture.kind != RT_TEXTURE_NONE;
@@ -95,12 +96,17 @@ RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, con
     return status;
 }
 
+RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
+                        RtError *error) {
+    return append(scene, path, material, transform, false, error);
+}
+
 RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error) {
     uint32_t material;
     RtMaterial standard = rt_default_material();
     scene->camera.up = rt_vec3(0, 1, 0);
     RT_TRY(rt_scene_add_material(scene, &standard, &material, error));
-    return rt_mesh_append(scene, path, material, NULL, error);
+    return append(scene, path, material, NULL, true, error);
 }
 
 static RtStatus check_shapes(const RtGeometry *g, const char *extension, RtError *error) {

@@ -73,6 +73,7 @@ typedef struct RtMeshReader {
     uint32_t material;
     RtTransform transform; /* of vertices and normals, less the offset of the scene */
     bool moves;            /* it does, so that coordinates are read as doubles and rounded behind it */
+    bool whole;            /* the file is the whole scene, so that it may have instances */
     bool textured;         /* a material has a texture: texture coordinates are kept */
     uint32_t vertex_count, vertex_capacity, normal_count, normal_capacity, corner_count, corner_capacity;
     uint32_t uv_count, uv_capacity;

@@ -194,6 +194,13 @@ uint32_t rt_geometry_holder(const RtGeometry *geometry, uint32_t id) {
     return plain + low;
 }
 
+RtShape rt_geometry_shape(const RtGeometry *geometry, uint32_t id) {
+    const uint32_t object = rt_geometry_holder(geometry, id);
+    if (!rt_is_instance(geometry, object)) return rt_ref_shape(geometry->objects[object]);
+    const RtInstance *instance = rt_instance_of(geometry, object);
+    return rt_geometry_shape(instance->geometry, id - instance->first);
+}
+
 /* Of a ray with the largest CSG tree of a geometry and its parts. */
 static uint32_t most_crossings(const RtGeometry *geometry) {
     uint32_t most = geometry->part_crossings;
@@ -203,7 +210,21 @@ static uint32_t most_crossings(const RtGeometry *geometry) {
     return most;
 }
 
-RtStatus rt_geometry_add_instance(RtGeometry *geometry, const RtGeometry *part, uint32_t part_index,
+/* Measures the part, once. */
+static RtStatus measure_reach(RtGeometry *part, RtError *error) {
+    if (part->reach) return RT_OK;
+    part->reach = rt_alloc(RT_REACHES, sizeof *part->reach);
+    if (!part->reach) return rt_fail_memory(error, "the reach of a part", RT_REACHES * sizeof *part->reach);
+    for (int i = 0; i < RT_REACHES; i++) {
+        const RtVec3d direction = {{i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1}};
+        part->reach[i] = -(double)INFINITY;
+        for (uint32_t id = 0; id < part->object_count; id++)
+            part->reach[i] = fmax(part->reach[i], rt_object_support(part, id, direction));
+    }
+    return RT_OK;
+}
+
+RtStatus rt_geometry_add_instance(RtGeometry *geometry, RtGeometry *part, uint32_t part_index,
                                   const RtTransform *to_world, RtError *error) {
     const uint64_t ids = (uint64_t)rt_geometry_id_count(geometry) + rt_geometry_id_count(part);
     RtInstance instance = {
@@ -219,6 +240,7 @@ RtStatus rt_geometry_add_instance(RtGeometry *geometry, const RtGeometry *part, 
         for (int row = 0; row < 3; row++) instance.columns[column][row] = to_part.m[row][column];
     }
     if (part->object_count == 0) return RT_OK; /* it would have no box */
+    RT_TRY(measure_reach(part, error));
     const RtBox box = rt_moved_box(&part->box, to_world);
     RT_TRY(check_point(box.lo, error));
     RT_TRY(check_point(box.hi, error));
@@ -318,6 +340,7 @@ void rt_geometry_clear(RtGeometry *g) {
 #undef X
     rt_csg_forest_clear(&g->forest);
     rt_free(g->boxes);
+    rt_free(g->reach);
     *g = (RtGeometry){0};
 }
 

@@ -76,7 +76,9 @@ typedef struct RtGeometry {
 
     RtCsgForest forest; /* the CSG trees' parts */
 
-    uint32_t nesting;        /* levels of instances */
+    uint32_t nesting; /* levels of instances */
+    double *reach;    /* [RT_REACHES] owned, of a part: the largest dot product of its objects with each
+                       * (x, y, z) of -1, 0 and 1, at 9 (x + 1) + 3 (y + 1) + z + 1; else NULL */
     uint32_t part_crossings; /* of the largest CSG tree in the parts of its instances */
 
     /* Made by rt_geometry_finish. */
@@ -110,7 +112,7 @@ RtStatus rt_geometry_add_csg(RtGeometry *geometry, const RtCsgBuilder *builder, 
 /* Adds an instance of a part, which must be finished and outlive the geometry; after it, only instances may
  * be added. One of a part without objects is left out. Rejects a matrix that rounding would spoil
  * (rt_transform_invert), a box beyond RT_MAX_COORDINATE, and too many objects or levels. */
-RtStatus rt_geometry_add_instance(RtGeometry *geometry, const RtGeometry *part, uint32_t part_index,
+RtStatus rt_geometry_add_instance(RtGeometry *geometry, RtGeometry *part, uint32_t part_index,
                                   const RtTransform *to_world, RtError *error);
 
 /* Objects in the flattened order; object_count counts an instance as one. */
@@ -118,6 +120,9 @@ uint32_t rt_geometry_id_count(const RtGeometry *geometry);
 
 /* The object 0..object_count-1 that is, or contains, the one with this id. */
 uint32_t rt_geometry_holder(const RtGeometry *geometry, uint32_t id);
+
+/* The shape of the object with this id, also inside instances. */
+RtShape rt_geometry_shape(const RtGeometry *geometry, uint32_t id);
 
 static inline bool rt_is_instance(const RtGeometry *geometry, uint32_t object) {
     return rt_ref_shape(geometry->objects[object]) == RT_SHAPE_INSTANCE;
@@ -165,6 +170,11 @@ RtVec3d rt_triangle_weights(const RtTriangle *triangle, RtVec3d point);
 RtBox rt_object_box(const RtGeometry *geometry, uint32_t id);
 RtBall rt_object_ball(const RtGeometry *geometry, uint32_t id);
 double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direction);
+
+/* At least the largest dot product of a part's objects with `direction`, from its reach: a direction is a sum
+ * of three that are known. Of a ball, 6 % more at most. */
+enum { RT_REACHES = 27 };
+double rt_reach(const double reach[RT_REACHES], RtVec3d direction);
 
 /* The box of a box that is moved, which is not empty. */
 RtBox rt_moved_box(const RtBox *box, const RtTransform *transform);

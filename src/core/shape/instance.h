@@ -10,6 +10,14 @@
  * is in the instance's own thick box (core/base/ray.h), and a ray that misses that box misses the instance.
  * So structures above prune as for any object, and rounding decides nothing that they do.
  *
+ * How far clamping moves a hit. The part's hit is in the thick box of an object there, whose planes are moved
+ * by s'_b along axis b, by 2^-20 of the distance of the farthest plane and 2^-23 |org_b| (core/base/ray.h).
+ * Moving the ray rounds by 2^-24 of |org_b| and of t |dir_b|: by at most s'_b / 2. So outside, where the
+ * planes of the box are moved by s_a, the hit is beyond the box's own plane by at most the sum over b of 3/2
+ * |m_ab| s'_b. With 3/16 of each s for the rounding of crossings, t is moved to the plane across axis a by
+ *
+ *     at most (sum over b of 7/4 |m_ab| s'_b - 3/4 s_a) / |dir_a|,   not at all if that is not above 0.
+ *
  * Ids. The instances of a geometry come after its other objects. Hits name objects by their place in the
  * flattened order: a geometry's other objects, then those of its instances, one instance after the other. So
  * a plain object has the same id at its level, and that of an object in an instance is the instance's `first`

@@ -213,22 +213,47 @@ RtBox rt_moved_box(const RtBox *box, const RtTransform *transform) {
     return moved;
 }
 
+double rt_reach(const double reach[RT_REACHES], RtVec3d direction) {
+    static const int places[3] = {9, 3, 1};
+    const double size[3] = {fabs(direction.x), fabs(direction.y), fabs(direction.z)};
+    const int longest = size[0] >= size[1] ? (size[0] >= size[2] ? 0 : 2) : size[1] >= size[2] ? 1 : 2;
+    const int next = (longest + 1) % 3, last = (longest + 2) % 3;
+    const int order[3] = {longest, size[next] >= size[last] ? next : last,
+                          size[next] >= size[last] ? last : next};
+    double sum = 0;
+    for (int i = 0, known = 13; i < 3; i++) {
+        known += direction.at[order[i]] < 0 ? -places[order[i]] : places[order[i]];
+        sum += (size[order[i]] - (i < 2 ? size[order[i + 1]] : 0)) * reach[known];
+    }
+    return sum;
+}
+
+static double instance_support(const RtGeometry *g, uint32_t index, RtVec3d direction) {
+    const RtInstance *instance = &g->instances[index];
+    RtVec3d inside; /* by the transposed matrix */
+    for (int a = 0; a < 3; a++)
+        inside.at[a] = rt_dotd(direction, rt_transform_column(&instance->to_world, a));
+    return rt_reach(instance->geometry->reach, inside) +
+           rt_dotd(direction, rt_transform_column(&instance->to_world, 3));
+}
+
+/* The box of the part's box is larger where it is turned. */
 static RtBox instance_box(const RtGeometry *g, uint32_t index) {
-    return rt_moved_box(&g->instances[index].geometry->box, &g->instances[index].to_world);
+    RtBox box = rt_moved_box(&g->instances[index].geometry->box, &g->instances[index].to_world);
+    for (int a = 0; a < 3; a++) {
+        RtVec3d axis = {{0, 0, 0}};
+        axis.at[a] = 1;
+        box.hi.at[a] = rt_minf(box.hi.at[a], rt_float_above(instance_support(g, index, axis)));
+        axis.at[a] = -1;
+        box.lo.at[a] = rt_maxf(box.lo.at[a], rt_float_below(-instance_support(g, index, axis)));
+    }
+    return box;
 }
 
 static RtBall instance_ball(const RtGeometry *g, uint32_t index) {
     const RtBox box = instance_box(g, index);
     const RtVec3d lo = rt_widen(box.lo), hi = rt_widen(box.hi), center = rt_scaled(rt_addd(lo, hi), 0.5);
     return (RtBall){center, rt_lengthd(rt_subd(hi, center)) * (1 + 0x1p-50)};
-}
-
-static double instance_support(const RtGeometry *g, uint32_t index, RtVec3d direction) {
-    const RtBox box = instance_box(g, index);
-    double most = 0;
-    for (int a = 0; a < 3; a++)
-        most += (double)(direction.at[a] < 0 ? box.lo : box.hi).at[a] * direction.at[a];
-    return most;
 }
 
 static const struct {

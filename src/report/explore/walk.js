@@ -70,9 +70,9 @@ function sentence(data, ray, path, step) {
 }
 
 function showRow(data, ray, row, i, step) {
-  const ends = row.box ? (span(ray, row.box) ?? [NaN, NaN]).map(number) : ['', ''];
+  const ends = row.box && row.form.level === 0 ? (span(ray, row.box) ?? [NaN, NaN]).map(number) : ['', ''];
   return element('tr', { 'aria-current': i + 1 === step ? 'step' : null },
-    element('td', { class: 'number' }, String(i + 1)), element('td', {}, row.form.name), element('td', {}, subject(data, row)),
+    element('td', { class: 'number' }, String(i + 1)), element('td', {}, '\u2003'.repeat(row.form.level) + row.form.name), element('td', {}, subject(data, row)),
     element('td', { class: 'number' }, ends[0]), element('td', { class: 'number' }, ends[1]), element('td', {}, result(row)));
 }
 
