@@ -46,7 +46,7 @@ RT_KERNEL bool rt_enter_end(const RtInstance *instance, const RtEntry *entry, Rt
         return false;
     }
     hit.t = any ? entry->near : rt_clamp_entry(entry, hit.t);
-    hit.object += instance->first;
+    if (hit.object != RT_UNNAMED_OBJECT) hit.object += instance->first;
     RT_OBSERVE(tally, .kind = RT_TRACED_LEFT, .met = true, .t = hit.t);
     if (rt_hit_before(hit.t, hit.object, *best)) *best = hit;
     return any;

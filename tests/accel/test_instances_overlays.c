@@ -161,8 +161,10 @@ RT_TEST(a_shadow_ray_tests_the_instances_of_its_cell) {
     uint32_t occluder;
     rt_trace_stream(accel, query.scratch, &ray, 1, NULL, &occluder, tallies);
     assert_int_equal(occluder, 2); /* the second's first ball */
-    assert_tally("light", &tallies[RT_RAY_SHADOW],
-                 &(RtTally){.rays = 1, .hits = 1, .steps = 1, .object_tests = 2, .object_hits = 1});
+    assert_tally(
+        "light", &tallies[RT_RAY_SHADOW],
+        &(RtTally){
+            .rays = 1, .hits = 1, .steps = 1, .object_tests = 2, .object_hits = 1, .instances_entered = 1});
 }
 
 RT_TEST(the_shadow_of_an_instance_reaches_to_the_corners_of_its_box) {
