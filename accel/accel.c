@@ -22,10 +22,6 @@ static void destroy_layer(RtAccel *accel) {
 RtStatus rt_accel_build_layer(const RtAccelOps *ops, const RtBuild *what, RtAccel *below, RtAccel **out,
                               RtError *error) {
     assert(ops->bytes >= sizeof(RtAccel));
-    if (ops->flat && what->scene->geometry.instance_count > 0)
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s serves no scene with instances: `raytally convert --flatten` writes one of copies",
-                       ops->name);
     RtAccel *accel = rt_alloc(1, ops->bytes);
     if (!accel) return rt_fail_memory(error, ops->name, ops->bytes);
     *accel = (RtAccel){.ops = ops,

@@ -188,7 +188,6 @@ struct RtAccelOps {
     size_t param_count;
     uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays. Which
                        rays a plugin's answers is unknown: RT_ALL_RAY_KINDS */
-    bool flat;      /* refuses scenes with instances, as a plugin's with its own hit functions does */
     bool remote;    /* a plugin's, which is built in a process of its own (accel/plugin.h) */
     /* Optional: a spec, "light:cells=100", that is verified in addition to the default. For accelerators that
      * do not use their own structure over few objects or rays by default. */

@@ -72,7 +72,7 @@ static RtStatus check_layers(const RtSpec *spec, const char *text, RtError *erro
 static RtStatus parse_part(const char *text, RtSpec *spec, RtError *error) {
     spec->of_parts = true;
     RT_TRY(parse_layer(text, strlen(text), &spec->part, error));
-    if (!spec->part.ops->kinds && !spec->part.ops->flat && !spec->part.ops->remote) return RT_OK;
+    if (!spec->part.ops->kinds && !spec->part.ops->remote) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
                    "'%.80s': %s cannot stand after a '/', where the accelerator of parts is", text,
                    spec->part.ops->name);

@@ -438,17 +438,20 @@ RT_KERNEL void hit_object(const RtGeometry *g, uint32_t id, const RtRay *ray, Rt
     RtPreparedRay prepared;
     uint32_t levels = 0, object = id, at;
     rt_hit_ray(&prepared, g, ray, hit_memory);
-    while (rt_is_instance(g, at = rt_geometry_holder(g, object))) {
+    while (rt_is_instance(g, at = rt_geometry_holder(g, object)) &&
+           rt_enter_begin(g, at, &prepared, &none, &entries[levels], &inside[levels], tally)) {
         const RtInstance *instance = rt_instance_of(g, at);
-        if (!rt_enter_begin(g, at, &prepared, &none, &entries[levels], &inside[levels], tally)) return;
         object -= instance->first;
         g = instance->geometry;
         rt_hit_ray(&prepared, g, &inside[levels++], hit_memory);
     }
-    rt_test_object(g, object, &prepared, false, hit, tally);
-    if (hit->object == RT_NO_OBJECT) return;
-    hit->object = id;
-    while (levels-- > 0) hit->t = rt_clamp_entry(&entries[levels], hit->t);
+    if (!rt_is_instance(g, at)) rt_test_object(g, object, &prepared, false, hit, tally);
+    const bool met = hit->object != RT_NO_OBJECT;
+    while (levels-- > 0) {
+        hit->t = rt_clamp_entry(&entries[levels], hit->t);
+        RT_OBSERVE(tally, .kind = RT_TRACED_LEFT, .met = met, .t = hit->t);
+    }
+    *hit = met ? (RtHit){hit->t, id} : RT_MISS;
 }
 
 /* If it is, *triangle is its index. */

@@ -662,7 +662,6 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                             .params = ops->params,
                             .param_count = table->param_count,
                             .kinds = table->flags & RAYTALLY_OVERLAY ? RT_ALL_RAY_KINDS : 0,
-                            .flat = (table->flags & RAYTALLY_OWN_HITS) != 0,
                             .remote = true,
                             .bytes = sizeof(Plugin),
                             .build = build,

@@ -161,8 +161,29 @@ RT_TEST(a_shadow_ray_tests_the_instances_of_its_cell) {
     uint32_t occluder;
     rt_trace_stream(accel, query.scratch, &ray, 1, NULL, &occluder, tallies);
     assert_int_equal(occluder, 2); /* the second's first ball */
-    assert_tally("light", &tallies[RT_RAY_SHADOW],
-                 &(RtTally){.rays = 1, .hits = 1, .steps = 1, .object_tests = 2, .object_hits = 1});
+    assert_tally(
+        "light", &tallies[RT_RAY_SHADOW],
+        &(RtTally){
+            .rays = 1, .hits = 1, .steps = 1, .object_tests = 2, .object_hits = 1, .instances_entered = 1});
+}
+
+RT_TEST(the_shadow_of_an_instance_reaches_to_the_corners_of_its_box) {
+    enum { EDGE = 40 };
+    OWNED_SCENE scene = begin_square();
+    place(&scene, &scene, 0, moved(0, 0, 1));
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 4), rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_ACCEL RtAccel *accel = open_valid(&scene, "light:cells=256+brute");
+    OWNED_QUERY query = open_query(accel);
+    for (int i = 0; i < EDGE * EDGE; i++) { /* from above a floor that is twice as far away as the square */
+        const float x = ((float)(i % EDGE) + 0.5f) / 8 - 2.5f, y = ((float)(i / EDGE) + 0.5f) / 8 - 2.5f;
+        const RtRay ray = shadow_ray(&scene, rt_vec3(x, y, -1.99f), 0);
+        RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+        bool blocked;
+        rt_occluded(&query, &ray, 1, &blocked, tallies);
+        assert_int_equal(blocked, fmaxf(fabsf(x), fabsf(y)) < 2);
+        assert_int_equal(tallies[RT_RAY_SHADOW].passed_on, 0);
+    }
 }
 
 /* The square stands upright and faces the light; in its part it would be turned away. */

@@ -4,6 +4,7 @@
  * report of them. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"
+#include "instances_testing.h"
 
 #include "accel/plugin.h"
 #include "core/base/clock.h"
@@ -117,8 +118,9 @@ RT_TEST(counts_are_the_same_on_any_number_of_threads) {
 /* ---- instances ---- */
 
 RT_TEST(to_a_plugin_an_instance_is_an_object_and_its_answers_name_those_within) {
-    static const char *const specs[] = {"my-accel", "bvh_copy", "bvh_copy/grid", "shadow-cache+bvh",
-                                        "light:cells=20+item+shadow-cache+bvh_copy/bvh"};
+    static const char *const specs[] = {"my-accel",        "bvh_copy",
+                                        "bvh_copy/grid",   "shadow-cache+bvh",
+                                        "faulty-over+bvh", "light:cells=20+item+shadow-cache+bvh_copy/bvh"};
     load_all();
     for (uint64_t seed = 1; seed <= RT_SHARE(4, 2); seed++) {
         OWNED_BENCH bench;
@@ -161,13 +163,10 @@ RT_TEST(in_instances_a_plugin_counts_what_the_built_in_one_that_it_copies_counts
     }
 }
 
-RT_TEST(a_plugin_with_its_own_hit_functions_refuses_instances_and_no_plugin_is_of_parts_alone) {
+RT_TEST(no_plugin_is_of_parts_alone) {
+    RtSpec spec;
     load_all();
-    OWNED_SCENE scene = open_family(scene_family("instanced"), 1);
-    RtAccel *accel;
-    assert_bad_input(rt_accel_open("own-hits", &scene, &accel, error),
-                     "own-hits serves no scene with instances");
-    assert_bad_input(rt_accel_open("bvh/bvh_copy", &scene, &accel, error), "cannot stand after a '/'");
+    assert_bad_input(rt_spec_parse("bvh/bvh_copy", &spec, error), "cannot stand after a '/'");
 }
 
 /* ---- overlays ---- */
@@ -303,8 +302,9 @@ static RtEquivalence verdicts_on(const char *scene, const char *spec, FamilyBenc
 }
 
 RT_TEST(one_with_its_own_hit_functions_gets_the_geometry_and_is_judged_by_verdicts) {
-    static const char *const scenes[] = {"random:n=200,shape=mixed", "random:n=200,shape=triangle",
-                                         "random:n=200", "random:n=0", "csg-field:n=30"};
+    static const char *const scenes[] = {
+        "random:n=200,shape=mixed", "random:n=200,shape=triangle", "random:n=200", "random:n=0",
+        "csg-field:n=30",           "balls:size=2,instances=on"};
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
         OWNED_BENCH bench;
         OWNED_ACCEL RtAccel *accel;
@@ -312,6 +312,22 @@ RT_TEST(one_with_its_own_hit_functions_gets_the_geometry_and_is_judged_by_verdic
         assert_true(!accel->exact && accel->counts);
         assert_int_equal(result.verdicts[RT_WRONG] + result.occluded_wrong, 0);
         assert_true(result.rays > 0 && result.verdicts[RT_EQUAL] > result.rays / 2);
+    }
+}
+
+RT_TEST(an_occluder_that_a_part_does_not_name_blocks_all_the_same) {
+    load_all();
+    OWNED_SCENE scene = begin_balls();
+    add_ball(&scene, 0, 0, -9, 1);
+    for (int i = 0; i < 2; i++) place(&scene, &scene, 0, moved(4 * i, 0, 0)); /* ids 1 and 2 */
+    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "own-unnamed");
+    OWNED_QUERY query = open_query(accel);
+    for (int i = 0; i < 2; i++) {
+        const RtRay ray = {.org = rt_vec3(4 * (float)i, 0, 5), .dir = rt_vec3(0, 0, -1), .tmax = 8};
+        uint32_t occluder;
+        rt_trace_stream(accel, query.scratch, &ray, 1, NULL, &occluder, NULL);
+        assert_int_equal(occluder, RT_UNNAMED_OBJECT);
     }
 }
 
