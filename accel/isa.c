@@ -40,9 +40,7 @@ RtIsa rt_isa_asked(RtValue value) {
 }
 
 const char *rt_isa_name(RtIsa isa) {
-    static const char *const names[] = {
-        [RT_ISA_PORTABLE] = "portable", [RT_ISA_AVX2] = "avx2", [RT_ISA_AVX512] = "avx512"};
-    return names[isa];
+    return isa == RT_ISA_PORTABLE ? "portable" : isa == RT_ISA_AVX2 ? "avx2" : "avx512";
 }
 
 static RtStatus available(RtIsa isa, RtError *error) {
