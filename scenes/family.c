@@ -282,7 +282,9 @@ static Instancing instancing(const Recipe *recipe) {
     case ON_A_LATTICE: return (Instancing){1, 0, 0, 27};
     case COINCIDENT: return (Instancing){3, 4, 0, 3 * COINCIDE};
     case HUGE_BESIDE_TINY: return (Instancing){3, 4, 0, 16};
-    case CONCENTRIC: return (Instancing){8, 1, 2, 2}; /* nested in eight levels */
+    case CONCENTRIC:
+        return (Instancing){4, 1, 2,
+                            2}; /* four levels: structures that test an object more than once multiply */
     default: return (Instancing){6, 4, 2, 16};
     }
 }

@@ -100,7 +100,8 @@ static RtMarginRay enter(const RtMarginRay *outside, const RtGeometry *geometry,
     inside.extra += rt_lengthd(inside.off);
     inside.scale *= length / inside.line.length;
     inside.unclear |=
-        largest > (double)RT_MAX_COORDINATE / 2 || rt_exceeds_float(inside.line.length, inside.line.length) ||
+        !(largest + rt_lengthd(inside.off) <= (double)RT_MAX_COORDINATE / 2) ||
+        rt_exceeds_float(inside.line.length, inside.line.length) ||
         rt_exceeds_float(fmin(far, length) * fmin(far, length), fmax(far, length) * fmax(far, length));
     return inside;
 }

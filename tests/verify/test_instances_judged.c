@@ -263,7 +263,7 @@ RT_TEST(structures_that_round_moved_rays_or_copies_have_nothing_wrong) {
             if (probe.geometry.instance_count == 0) break;
             OWNED_BENCH bench;
             uint64_t before = certain;
-            set_up_family(&bench, f, seed, RT_SHARE(40, 10));
+            set_up_family(&bench, f, seed, RT_SHARE(15, 5));
             assert_none_is_wrong(&bench, &certain);
             rays += bench.reference.count;
             print_message("%s: %" PRIu64 " of %zu certain\n", bench.scene.name, certain - before,
@@ -306,7 +306,7 @@ RT_TEST(a_structure_that_never_hits_is_wrong_about_what_instances_contain) {
     static const char *const kinds[] = {"instanced", "instanced-far"};
     for (uint64_t i = 0; i < 2; i++) {
         OWNED_BENCH bench;
-        set_up_family(&bench, scene_family(kinds[i]), 3, 200);
+        set_up_family(&bench, scene_family(kinds[i]), 3, 120);
         const size_t count = bench.reference.count;
         OWNED_MEMORY RtHit *hits = rt_alloc(count, sizeof(RtHit));
         RtEquivalence result;
