@@ -126,10 +126,7 @@ static void print_test(const RtPath *path, const RtPathRow *row) {
 
 /* Columns of the first word of a row, which is indented by the instances around it. */
 static int word_width(const RtPath *path) {
-    uint32_t level = 0;
-    for (uint32_t i = 0; i < path->place_count; i++)
-        if (path->places[i].level > level) level = path->places[i].level;
-    return 14 + 2 * (int)level;
+    return 14 + 2 * (int)path->places[0].scene->geometry.nesting;
 }
 
 static void print_row(const RtPath *path, uint32_t index) {
