@@ -152,8 +152,8 @@ typedef struct RtBuild {
     const RtValue *values; /* [param_count], in range */
     int threads;           /* 0 = all processors; does not change the structure */
     uint64_t limit;        /* a structure of more bytes, as its `build` estimates them, is refused */
-    RtAccel **parts; /* of a scene's parts, which are built before it, in order: NULL from the one that is
-                        built on; NULL if there are no parts */
+    RtAccel **parts; /* [part_count] borrowed, of the scene's parts; those not built yet are NULL. NULL if
+                        it has none */
 } RtBuild;
 
 /* Parameters of several accelerators. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Entering instances (core/shape/instance.h), in two halves: between them the part is asked for the hit of
- * the moved ray, which is alone (instance.c) or one of a stream (wide).
+ * the moved ray, which is alone (instance.c) or one of a stream (wide, item).
  *
  * The part is asked for hits up to the best one, but not where the interval of the instance's thick box ends
  * before it: a hit beyond would be clamped to that end, and so be nearer. */

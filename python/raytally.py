@@ -16,8 +16,8 @@ such as float64, are refused, not rounded: use `array.astype("float32")`. Lists 
 Results: HIT has `t` and `object`. COUNTS has a field for each of COUNTERS: `rays`; `hits`; `object_tests`, intersection
 routines entered, and `object_hits`, those that found a hit; `extent_tests`, of bounding volumes; `steps`, nodes, voxels or
 list entries visited, of which `leaf_steps`, of which `empty_steps`; `csg_tests`, of solids in CSG trees; `repeats_avoided`
-by a mailbox; `passed_on` by overlays; `instances_entered`. ESTIMATE has the `median` of measurements, the `least`, and an interval, `low` to
-`high`, that holds the median with probability `coverage`. TIME has two: `seconds` and `ratio`.
+by a mailbox; `passed_on` by overlays; `instances_entered`. ESTIMATE has the `median` of measurements, the `least`, and an
+interval, `low` to `high`, that holds the median with probability `coverage`. TIME has two: `seconds` and `ratio`.
 
 Errors: RaytallyError says what is wrong, and what would be right. Without a library the import fails (ImportError). It
 is $RAYTALLY_LIBRARY, or libraytally.so.1 as installed with this file, in build/release, or where the system looks.

@@ -275,16 +275,15 @@ typedef struct Instancing {
     uint32_t parts, own, inner, instances;
 } Instancing;
 
-enum { COINCIDE = 40 };
+enum { COINCIDENT_COUNT = 40 };
 
 static Instancing instancing(const Recipe *recipe) {
     switch (recipe->place) {
     case ON_A_LATTICE: return (Instancing){1, 0, 0, 27};
-    case COINCIDENT: return (Instancing){3, 4, 0, 3 * COINCIDE};
+    case COINCIDENT: return (Instancing){3, 4, 0, 3 * COINCIDENT_COUNT};
     case HUGE_BESIDE_TINY: return (Instancing){3, 4, 0, 16};
     case CONCENTRIC:
-        return (Instancing){4, 1, 2,
-                            2}; /* four levels: structures that test an object more than once multiply */
+        return (Instancing){4, 1, 0, 2}; /* costs of levels multiply where objects are tested twice */
     default: return (Instancing){6, 4, 2, 16};
     }
 }
@@ -365,7 +364,7 @@ static void add_instance(Family *f, RtScene *to, const RtScene *of, uint32_t i) 
     RtStatus status = f->b->status == RT_OK ? RT_BAD_INPUT : f->b->status;
     const Place place = f->recipe->place;
     for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++) {
-        const uint32_t turn = place == COINCIDENT ? i / COINCIDE : i;
+        const uint32_t turn = place == COINCIDENT ? i / COINCIDENT_COUNT : i;
         RtTransform at = place == ON_A_LATTICE ? in_a_row(i) : some_matrix(f, turn);
         if (to == of) at = rt_transform_compose(&at, &f->b->transform);
         const uint32_t part = is_nested(f->recipe)  ? of->part_count - 1

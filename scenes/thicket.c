@@ -92,7 +92,7 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
         for (uint32_t octant = 0; instances && octant < octants; octant++)
             if (b->part_sizes[octant] > 0) rt_build_instance(b, octant, &place);
         b->transform = place;
-        if (!instances) add_bush(b, values, i, opened, 0);
+        if (!instances) add_bush(b, values, PART_STREAM | i, opened, 0);
     }
 }
 

@@ -329,7 +329,8 @@ static void draw_block(RtItemTile *tile, uint32_t block, const RtItemFootprint *
     const uint32_t left = block % RT_ITEM_ACROSS * RT_ITEM_BLOCK,
                    top = block / RT_ITEM_ACROSS * RT_ITEM_BLOCK;
     RtRay ray = rt_view_ray(&tile->buffer->view, tile->column, tile->row);
-    Entering entering = {.count = 0};
+    Entering entering;
+    entering.count = 0;
     ray.kind = 0; /* one tally for all kinds */
     for (uint32_t k = 0; k < RT_ITEM_BLOCK_SAMPLES; k++) {
         const uint32_t i = block * RT_ITEM_BLOCK_SAMPLES + k;

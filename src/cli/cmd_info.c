@@ -259,11 +259,9 @@ RtStatus rt_command_info(int argc, char **argv, RtError *error) {
     RT_TRY(count_copies(&scene, &counts, error));
     if (o.nodes) RT_TRY(save_nodes(&o, &scene, error));
     if (o.extents && scene.geometry.instance_count > 0)
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "%s: --extents sees no objects inside instances: `raytally convert --flatten` writes a "
-            "scene of copies",
-            o.scene);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: --extents sees no objects inside instances: `raytally convert --flatten` first",
+                       o.scene);
     if (o.extents) RT_TRY(rt_extents_table(&table, &scene, o.every_slabs, o.rays, o.seed, error));
     if (o.json) {
         json_t *info = info_json(&scene, &counts);

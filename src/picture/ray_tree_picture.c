@@ -362,8 +362,13 @@ static RtStatus draw(Drawing *d, const char *title, const char *file, RtError *e
 
 RtStatus rt_ray_tree_draw(const RtRayTree *tree, const RtScene *scene, const char *title, const char *file,
                           RtError *error) {
-    Drawing d = {.tree = tree, .scene = scene};
+    RT_OWNED(RtScene, copies, rt_scene_clear);
     if (tree->count == 0) return rt_fail(error, RT_BAD_INPUT, "the pixel has no ray to draw");
+    if (scene->geometry.instance_count > 0) { /* copies have the same ids */
+        RT_TRY(rt_scene_flatten(scene, &copies, error));
+        scene = &copies;
+    }
+    Drawing d = {.tree = tree, .scene = scene};
     RT_TRY(rt_hit_memory_alloc(&scene->geometry, &d.hit_memory, error));
     RtStatus status = draw(&d, title, file, error);
     rt_free(d.hit_memory);

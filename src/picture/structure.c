@@ -34,6 +34,7 @@ typedef struct Drawing {
     uint32_t level;       /* current level */
     bool hidden;          /* draw hidden or visible edges */
     bool parts;           /* those of parts are drawn, too */
+    uint64_t most_boxes;  /* with those, if so */
     RtTransform to_world; /* of the boxes being drawn */
     RtVec3d eye;          /* the eye among them */
     RtExtentKind kind;    /* of what is drawn */
@@ -103,14 +104,14 @@ static void set_line(const Drawing *d, double place, double opacity) {
 static void show_parts(Drawing *d, const RtGeometry *g, void (*show)(void *, const RtBoxView *)) {
     const RtTransform outside = d->to_world;
     const RtVec3d eye = d->eye;
-    for (uint32_t i = 0; i < g->instance_count && d->all <= MOST_IN_PARTS; i++) {
+    for (uint32_t i = 0; i < g->instance_count && d->all <= d->most_boxes; i++) {
         const RtInstance *instance = &g->instances[i];
         const RtAccel *part = d->layer->parts[instance->part];
         d->to_world = rt_transform_compose(&instance->to_world, &outside);
         for (int row = 0; row < 3; row++)
             d->eye.at[row] = instance->columns[0][row] * eye.x + instance->columns[1][row] * eye.y +
                              instance->columns[2][row] * eye.z + instance->columns[3][row];
-        if (part->ops->each_box) part->ops->each_box(part, (RtBoxViewer){show, d});
+        part->ops->each_box(part, (RtBoxViewer){show, d});
         show_parts(d, instance->geometry, show);
     }
     d->to_world = outside;
@@ -373,13 +374,13 @@ RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame
                  .height = s->height,
                  .em = rt_font_size(width)};
     choose_section(&d);
-    d.parts = !options->slice && layer->parts;
     each_box(&d, count_box);
-    if (d.parts && d.all > MOST_IN_PARTS) {
-        d.parts = false;
-        d.all = d.drawn = 0;
-        d.least = d.most = 0;
-        each_box(&d, count_box);
+    if (!options->slice && layer->parts && layer->parts[0]->ops->each_box) {
+        const Drawing alone = d;
+        d.most_boxes = d.all + MOST_IN_PARTS;
+        show_parts(&d, &layer->scene->geometry, count_box);
+        d.parts = d.all <= d.most_boxes;
+        if (!d.parts) d = alone;
     }
     RT_TRY(rt_accel_check(layer, error));
     /* A floor much larger than the view should not determine the scale. */

@@ -220,11 +220,7 @@ void rt_path_clear(RtPath *path) {
     rt_free(path->rows);
     rt_free(path->places);
     rt_free(path->ends);
-    path->rows = NULL;
-    path->places = NULL;
-    path->ends = NULL;
-    path->count = path->capacity = path->end_count = path->end_capacity = 0;
-    path->place_count = path->place_capacity = 0;
+    *path = (RtPath){0};
 }
 
 uint32_t rt_path_row_index(const RtPath *path, const RtPathRow *row) {

@@ -9,7 +9,7 @@
 #include "report/explore_record.h"
 #include "report/page.h"
 
-enum { SCALE_COLORS = 16 };
+enum { SCALE_COLORS = 16, MOST_COPIES = 1000000, MOST_IDS = 100000000 };
 
 RtStatus rt_explore_available(RtError *error) {
     if (explore_js[0]) return RT_OK;
@@ -144,8 +144,9 @@ static RtStatus write_page(FILE *out, const char *name, const RtRecordedPixels *
                            const RtExploredSpec *specs, const RtExploreOptions *options, RtError *error) {
     const RtScene *whole = recording->of[0].accel->scene, *scene = whole;
     RT_OWNED(RtScene, copies, rt_scene_clear);
-    /* Instances that cannot be copied are shown as boxes. */
-    if (whole->geometry.instance_count > 0 && rt_scene_flatten(whole, &copies, NULL) == RT_OK) {
+    /* Instances that cannot be copied, or are too many, are shown as boxes. */
+    if (whole->geometry.instance_count > 0 && rt_geometry_id_count(&whole->geometry) <= MOST_COPIES &&
+        rt_scene_flatten(whole, &copies, NULL) == RT_OK) {
         copies.sampling = whole->sampling;
         scene = &copies;
     }
@@ -188,6 +189,9 @@ RtStatus rt_explore_write(const char *path, const char *name, RtAccel *const *ac
     RtRecordedPixels recording;
     RtOutput output;
     RT_TRY(rt_explore_available(error));
+    if (rt_geometry_id_count(&accels[0]->scene->geometry) > MOST_IDS) /* a byte each, before compression */
+        return rt_fail(error, RT_BAD_INPUT, "a page holds at most %d objects, those in instances counted",
+                       MOST_IDS);
     RT_TRY(rt_output_open(&output, path, error));
     RtStatus status = rt_recorded_pixels_make(&recording, accels, count, options, error);
     if (status == RT_OK) {

@@ -15,7 +15,7 @@
  *   paths:   of one accelerator: for each pixel its number and length, and for each ray of its tree: object,
  *            t (float), the counters of its tally, the cell (1 + number, length, object, cut; or 0), rows of
  *            the path, rows kept, and of each kept one: event, and t (float) if the form has one
- *   events:  of one accelerator: form, index, 1 and a box or 0
+ *   events:  of one accelerator: form, index (rt_path_row_index), 1 and a box, in world space, or 0
  *   objects: spheres; of each center[3], radius, material; triangles likewise with 9 floats; of CSG trees
  *            their boxes, lo[3], hi[3], material
  *   boxes:   lo[3], hi[3] (floats), depth, 0 for an inner node, 1 + length of its list for a leaf
@@ -90,8 +90,8 @@ RtStatus rt_recorded_pixels_make(RtRecordedPixels *recording, RtAccel *const *ac
                                  const RtExploreOptions *options, RtError *error);
 void rt_recorded_pixels_clear(RtRecordedPixels *recording);
 
-/* The forms of rows, in order: {"name", "of", "met", "hit", "round", "counts": [names of counters]}. NULL if
- * memory is short. */
+/* The forms of rows, in order: {"name", "of", "level", "met", "hit", "round", "counts": [names of counters]}.
+ * NULL if memory is short. */
 json_t *rt_recorded_forms(const RtRecordedPaths *paths);
 
 /* The different events. */

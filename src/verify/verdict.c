@@ -99,7 +99,7 @@ RtStatus rt_verdict_side(RtJudge judge, RtHit expected, RtHit answer, RtSide *si
     return *side == RT_SIDE_UNDECIDED ? lack_memory(error) : RT_OK;
 }
 
-/* Keeps the first object that may be hit there, or the one that is expected. */
+/* Keeps the first object that may be hit there. */
 static void name_first(void *context, uint32_t id, const RtMargin *m) {
     uint32_t *name = context;
     if (m->holds && *name == RT_UNNAMED_OBJECT) *name = id;

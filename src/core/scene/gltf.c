@@ -13,8 +13,7 @@
 
 /* ---- the document ---- */
 
-__attribute__((format(printf, 3, 4))) RtStatus rt_gltf_fail(const RtGltf *g, const RtGltfItem *item,
-                                                            const char *format, ...) {
+RtStatus rt_gltf_fail(const RtGltf *g, const RtGltfItem *item, const char *format, ...) {
     char message[256];
     va_list arguments;
     va_start(arguments, format);

@@ -2,12 +2,11 @@
 /* glTF 2.0, as JSON (.gltf) or binary (.glb): the triangles of all nodes of the scene, nodes depth first,
  * each with its matrices, at rest: morph targets with the weights of the file, skins in the pose of their
  * joints. A mesh of PART_TRIANGLES or more that is placed several times, by nodes or by
- * EXT_mesh_gpu_instancing, becomes a part and instances of it, where it needs no skin and no mirror, and the
- * file is the whole scene; else copies. Materials are ignored, animations with a warning. Files that need
- * another extension for their geometry are rejected.
+ * EXT_mesh_gpu_instancing, becomes a part and instances of it, where it needs no skin and no mirror, is not
+ * far from its own origin, and the file is the whole scene; else copies. Materials are ignored, animations
+ * with a warning. Files that need another extension for their geometry are rejected.
  *
  * First all nodes are placed, because a skin needs the places of its joints; then come their meshes. */
-#include "core/base/memory.h"
 #include "core/scene/gltf.h"
 
 #include <math.h>
@@ -295,6 +294,14 @@ static RtStatus add_primitives(RtGltf *g, const RtGltfItem *mesh, const Pose *po
     return RT_OK;
 }
 
+/* Rays moved there would lose digits that copies keep. */
+static bool is_far(const RtGeometry *g) {
+    RtBox box = RT_EMPTY_BOX;
+    for (uint32_t i = 0; i < g->triangle_count; i++)
+        for (int k = 0; k < 3; k++) box = rt_box_add_point(box, g->triangles[i].v[k]);
+    return rt_box_largest_coordinate(box) > 64 * rt_box_longest_side(box);
+}
+
 /* Makes a part of the mesh, as if it were a scene of its own, and adds that to the scene. */
 static RtStatus make_part(Nodes *nodes, const RtGltfItem *mesh, const Pose *pose, Shared *shared) {
     RtGltf *g = nodes->document;
@@ -314,7 +321,8 @@ static RtStatus make_part(Nodes *nodes, const RtGltfItem *mesh, const Pose *pose
     scene->warnings = part.warnings;
     part.warnings = (RtWarnings){0};
     shared->part = NO_PART;
-    if (status != RT_OK || part.geometry.triangle_count < PART_TRIANGLES) return status;
+    if (status != RT_OK || part.geometry.triangle_count < PART_TRIANGLES || is_far(&part.geometry))
+        return status;
     shared->part = scene->part_count + 1;
     return rt_scene_add_part(scene, &part, r->text.error);
 }

@@ -269,6 +269,7 @@ static RtStatus move_materials(RtScene *scene, RtScene *part, RtError *error) {
 RtStatus rt_scene_add_part(RtScene *scene, RtScene *part, RtError *error) {
     RtScene *kept = rt_alloc(1, sizeof *kept);
     RtStatus status = kept ? finish_objects(part, error) : rt_fail_memory(error, "a part", sizeof *kept);
+    if (status == RT_OK) status = rt_geometry_measure_reach(&part->geometry, error);
     if (status == RT_OK) status = move_materials(scene, part, error);
     if (status == RT_OK)
         status =

@@ -210,9 +210,7 @@ static uint32_t most_crossings(const RtGeometry *geometry) {
     return most;
 }
 
-/* Measures the part, once. */
-static RtStatus measure_reach(RtGeometry *part, RtError *error) {
-    if (part->reach) return RT_OK;
+RtStatus rt_geometry_measure_reach(RtGeometry *part, RtError *error) {
     part->reach = rt_alloc(RT_REACHES, sizeof *part->reach);
     if (!part->reach) return rt_fail_memory(error, "the reach of a part", RT_REACHES * sizeof *part->reach);
     for (int i = 0; i < RT_REACHES; i++) {
@@ -224,7 +222,7 @@ static RtStatus measure_reach(RtGeometry *part, RtError *error) {
     return RT_OK;
 }
 
-RtStatus rt_geometry_add_instance(RtGeometry *geometry, RtGeometry *part, uint32_t part_index,
+RtStatus rt_geometry_add_instance(RtGeometry *geometry, const RtGeometry *part, uint32_t part_index,
                                   const RtTransform *to_world, RtError *error) {
     const uint64_t ids = (uint64_t)rt_geometry_id_count(geometry) + rt_geometry_id_count(part);
     RtInstance instance = {
@@ -240,7 +238,6 @@ RtStatus rt_geometry_add_instance(RtGeometry *geometry, RtGeometry *part, uint32
         for (int row = 0; row < 3; row++) instance.columns[column][row] = to_part.m[row][column];
     }
     if (part->object_count == 0) return RT_OK; /* it would have no box */
-    RT_TRY(measure_reach(part, error));
     const RtBox box = rt_moved_box(&part->box, to_world);
     RT_TRY(check_point(box.lo, error));
     RT_TRY(check_point(box.hi, error));
