@@ -157,8 +157,8 @@ RT_TEST(rows_inside_an_instance_are_indented_and_name_the_part_and_ids_of_the_wh
     }
     assert_int_equal(levels, 3);
     assert_int_equal(rows_of(path, "entered"), count_of(path, "instances_entered"));
-    assert_said(trace("balls:size=2,instances=on --size 64x64 --pixel 32,32 --depth 3 --svg '" OUT ".svg'"), 0,
-                OUT ".txt", "object 4, sphere");
+    assert_said(trace("balls:size=2,instances=on --size 64x64 --pixel 32,32 --depth 3 --svg '" OUT ".svg'"),
+                0, OUT ".txt", "sphere, balls");
     unlink(OUT ".svg");
 }
 
