@@ -94,6 +94,8 @@ static inline bool conforms(const FamilyBench *bench, const char *spec, const ch
         print_error("%s on %s is not valid: %s\n", spec, scene, error.message);
         good = false;
     }
+    /* Other arithmetic in instances takes long to judge: tests/verify/test_instances_judged.c. */
+    if (!accel->exact && bench->scene.geometry.instance_count > 0) return good;
     if (rt_equivalence_check(&bench->reference, accel, 0, &result, &error) != RT_OK) {
         print_error("%s on %s cannot be checked: %s\n", spec, scene, error.message);
         good = false;
