@@ -275,7 +275,7 @@ typedef struct Instancing {
     uint32_t parts, own, inner, instances;
 } Instancing;
 
-enum { COINCIDENT_COUNT = 40 };
+enum { COINCIDENT_COUNT = 8 };
 
 static Instancing instancing(const Recipe *recipe) {
     switch (recipe->place) {

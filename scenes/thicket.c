@@ -68,7 +68,8 @@ static RtTransform place_of(const RtValue *values, uint64_t i) {
     while (edge * edge * edge < (uint64_t)values[N].i) edge++;
     const RtVec3d axis = rt_random_direction(&random);
     const double distance = 2 * values[SPACING].f, degrees = rt_random_betweend(&random, 0, 360);
-    const RtVec3d at = {(double)(i % edge), (double)(i / edge % edge), (double)(i / edge / edge)};
+    const uint64_t column = i % edge, row = i / edge % edge, layer = i / edge / edge;
+    const RtVec3d at = {(double)column, (double)row, (double)layer};
     rt_transform_rotate(&place, rt_narrow(axis), degrees, NULL);
     rt_transform_translate(&place, rt_narrow(rt_scaled(at, distance)), NULL);
     return place;

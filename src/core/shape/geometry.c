@@ -214,7 +214,8 @@ RtStatus rt_geometry_measure_reach(RtGeometry *part, RtError *error) {
     part->reach = rt_alloc(RT_REACHES, sizeof *part->reach);
     if (!part->reach) return rt_fail_memory(error, "the reach of a part", RT_REACHES * sizeof *part->reach);
     for (int i = 0; i < RT_REACHES; i++) {
-        const RtVec3d direction = {{i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1}};
+        const int x = i / 9 - 1, y = i / 3 % 3 - 1, z = i % 3 - 1;
+        const RtVec3d direction = {{x, y, z}};
         part->reach[i] = -(double)INFINITY;
         for (uint32_t id = 0; id < part->object_count; id++)
             part->reach[i] = fmax(part->reach[i], rt_object_support(part, id, direction));
