@@ -486,8 +486,8 @@ RtStatus rt_path_draw(const RtPath *path, const RtScene *scene, const char *titl
     uint32_t left;
     Drawing d = {.path = path,
                  .geometry = &scene->geometry,
-                 .detail = {LEFT, TOP, PLOT, SECTION, {.scale = 1}},
-                 .overview = {MARGIN, TOP + SECTION - INSET, LEFT - 2 * MARGIN, INSET, {.scale = 1}}};
+                 .detail = {LEFT, TOP, PLOT, SECTION, {.scale = 1}, 0},
+                 .overview = {MARGIN, TOP + SECTION - INSET, LEFT - 2 * MARGIN, INSET, {.scale = 1}, 0}};
     choose_plane(&d);
     choose_windows(&d);
     const double bars = TOP + SECTION + GAP, bottom = bars + ROW * draw_rows(&d, bars, false, &left);
