@@ -44,13 +44,14 @@ static void check_rays(const RtAccel *accel, RtQuery *query) {
     bool blocked[COUNT];
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
     const RtTraceObserver observer = {check_event, NULL};
+    const uint32_t ids = rt_geometry_id_count(&accel->scene->geometry);
     for (int i = 0; i < COUNT; i++)
         rays[i] = (RtRay){.org = {{-9, 0, (float)i}}, .dir = {{1, 0, 0}}, .tmin = 1, .tmax = 100};
     rt_nearest(query, rays, COUNT, hits, NULL);
-    for (int i = 0; i < COUNT; i++) CHECK(rt_hit_is_possible(accel, &rays[i], hits[i]));
+    for (int i = 0; i < COUNT; i++) CHECK(rt_hit_is_possible(ids, &rays[i], hits[i]));
     rt_occluded(query, rays, COUNT, blocked, tallies);
     rt_nearest(query, rays, COUNT, hits, tallies);
-    for (int i = 0; i < COUNT; i++) CHECK(rt_hit_is_possible(accel, &rays[i], hits[i]));
+    for (int i = 0; i < COUNT; i++) CHECK(rt_hit_is_possible(ids, &rays[i], hits[i]));
     rt_trace_observer = &observer;
     rt_nearest(query, rays, 1, hits, tallies);
     rt_trace_observer = NULL;
