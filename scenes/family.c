@@ -288,17 +288,13 @@ static Instancing instancing(const Recipe *recipe) {
     }
 }
 
-static bool is_nested(const Recipe *recipe) {
-    return recipe->place == CONCENTRIC;
-}
-
 /* The objects of part `k`, without those of a cube, and its instances. */
 static uint32_t own_of(const Recipe *recipe, uint32_t k) {
-    return k == 0 || k == 5 ? is_nested(recipe) : instancing(recipe).own;
+    return k == 0 || k == 5 ? recipe->place == CONCENTRIC : instancing(recipe).own;
 }
 
 static uint32_t inner_of(const Recipe *recipe, uint32_t k) {
-    if (is_nested(recipe)) return k == 0 ? 0 : 1 + k % 2;
+    if (recipe->place == CONCENTRIC) return k == 0 ? 0 : 1 + k % 2;
     return k > 2 ? instancing(recipe).inner : 0;
 }
 
@@ -367,9 +363,9 @@ static void add_instance(Family *f, RtScene *to, const RtScene *of, uint32_t i) 
         const uint32_t turn = place == COINCIDENT ? i / COINCIDENT_COUNT : i;
         RtTransform at = place == ON_A_LATTICE ? in_a_row(i) : some_matrix(f, turn);
         if (to == of) at = rt_transform_compose(&at, &f->b->transform);
-        const uint32_t part = is_nested(f->recipe)  ? of->part_count - 1
-                              : place == COINCIDENT ? turn
-                                                    : rt_random_below(&f->random, of->part_count);
+        const uint32_t part = f->recipe->place == CONCENTRIC ? of->part_count - 1
+                              : place == COINCIDENT          ? turn
+                                                             : rt_random_below(&f->random, of->part_count);
         status = rt_scene_add_instance(to, of, part, &at, i % 3 ? RT_OWN_MATERIALS : 0, f->b->error);
     }
     rt_build_check(f->b, status);
@@ -395,7 +391,7 @@ static void add_part(Family *f, uint32_t k) {
     for (uint32_t i = 0; i < own; i++) {
         Placement at = placement_of(UNIFORM, &f->random, i, own);
         at.size *= 4;
-        if (k == 2 && !is_nested(f->recipe))
+        if (k == 2 && f->recipe->place != CONCENTRIC)
             add_tree(f, at, i);
         else
             add_mixed(f, at, i);

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* thicket: bushes, balls of small triangles, at the points of a cubic lattice, each turned another way, and
- * closer than they are wide: what do instances cost that overlap, and what would a builder gain that opens
- * their tops?
+/* thicket: bushes, balls of small triangles, at the points of a cubic lattice, each turned another way: what
+ * do instances cost that overlap, and what would a builder gain that opens their tops?
  *
- * Benthin, Woop, Wald & Afra 2017, "Improved Two-Level BVHs using Partial Re-Braiding", HPG, put the upper
- * nodes of parts in place of their instances. Here the bush itself is divided: by its triangles' centres
- * into the octants of its cube, as a node is by three planes, again and again; each is a part. */
+ * Benthin, Woop, Wald & Afra 2017, "Improved Two-Level BVHs using Partial Re-Braiding", HPG, put upper nodes
+ * of parts in place of instances. Here the bush is divided by its triangles' centres into octants: parts. */
 #include "scenes/builtin.h"
 
 #define PARAMS(X)                                                                                            \

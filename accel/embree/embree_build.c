@@ -270,11 +270,7 @@ static RtStatus check_instances(const RtGeometry *g, RtError *error) {
     for (uint32_t i = 0; i < g->instance_count; i++) {
         const RtInstance *instance = &g->instances[i];
         double stretch = 0;
-        for (int a = 0; a < 3; a++) {
-            double sum = 0;
-            for (int k = 0; k < 3; k++) sum += fabs(instance->columns[k][a]);
-            stretch = fmax(stretch, sum);
-        }
+        for (int k = 0; k < 9; k++) stretch += fabs(instance->columns[k / 3][k % 3]);
         RT_TRY(check_width(&instance->geometry->box, stretch, error));
     }
     return RT_OK;

@@ -125,14 +125,12 @@ static void print_test(const RtPath *path, const RtPathRow *row) {
 }
 
 /* Columns of the first word of a row, which is indented by the instances around it. */
-static int word_width(const RtPath *path) {
-    return 14 + 2 * (int)path->places[0].scene->geometry.nesting;
-}
+#define WORD_WIDTH(path) (14 + 2 * (int)(path)->places[0].scene->geometry.nesting)
 
 static void print_row(const RtPath *path, uint32_t index) {
     const RtPathRow *row = &path->rows[index];
     const RtPathPlace *place = &path->places[row->place];
-    const int width = word_width(path), indent = 2 * (int)row->level;
+    const int width = WORD_WIDTH(path), indent = 2 * (int)row->level;
     char of[RT_MAX_NAME + 32] = "";
     if (row->kind == RT_TRACED_OBJECT_TEST && strcmp(row->what, "object") == 0)
         snprintf(of, sizeof of, "%s %u, %s", row->what, rt_path_row_index(path, row),
@@ -161,7 +159,7 @@ static void print_row(const RtPath *path, uint32_t index) {
 
 static void print_rows(const RtPath *path, const Options *o) {
     uint32_t left_out = 0, joined = 0;
-    const int width = word_width(path);
+    const int width = WORD_WIDTH(path);
     printf("\n%5s  %*s  %-24s  %-20s  %-18s  %9s\n", "", width, "", "", " in box or solid, t", "",
            "nearest t");
     for (uint32_t i = 0, run; i < path->count; i += run) {

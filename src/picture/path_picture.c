@@ -160,12 +160,8 @@ static bool is_missed(const RtPathRow *row) {
     return row->kind == RT_TRACED_EXTENT_TEST && !row->met;
 }
 
-static RtVec3d turn(const RtTransform *m, RtVec3d v) {
-    return rt_subd(rt_transform_pointd(m, v), rt_transform_column(m, 3));
-}
-
-/* Sets *section to the plane in the place's own coordinates, through the same point of the ray, and the
- * matrix of cairo to what a drawing of it looks like from outside. Undo with cairo_restore. */
+/* Sets *section to the plane in the place's own coordinates, through the same point of the ray, and cairo's
+ * matrix to how that looks from outside. Undo with cairo_restore. */
 static void enter_place(const Drawing *d, const RtPathPlace *place, RtSection *section) {
     const RtSection *outside = &d->window->section;
     const RtTransform *m = &place->to_world;
@@ -179,7 +175,9 @@ static void enter_place(const Drawing *d, const RtPathPlace *place, RtSection *s
     section->up = rt_crossd(section->normal, section->right);
     section->on = rt_add_scaledd(rt_widen(place->ray.org), rt_widen(place->ray.dir), d->window->t);
     section->origin = (RtPoint){0, 0};
-    const RtVec3d right = turn(m, section->right), up = turn(m, section->up);
+    const RtVec3d zero = rt_transform_column(m, 3),
+                  right = rt_subd(rt_transform_pointd(m, section->right), zero),
+                  up = rt_subd(rt_transform_pointd(m, section->up), zero);
     const double size = rt_lengthd(right), by = outside->scale / (section->scale = outside->scale * size);
     cairo_transform(d->cairo,
                     &(cairo_matrix_t){rt_dotd(right, outside->right) * by, -rt_dotd(right, outside->up) * by,

@@ -67,8 +67,7 @@ RtStatus rt_path_available(const RtAccel *accel, const char *spec, RtError *erro
 RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *error);
 void rt_path_clear(RtPath *path);
 
-/* The index of a row for people: of an object in a part, its id in the whole scene; of an instance, its
- * number among those of its scene. */
+/* For people: of an object in a part its id in the whole scene, of an instance its number in its scene. */
 uint32_t rt_path_row_index(const RtPath *path, const RtPathRow *row);
 
 /* Whether `met` is known: not of other events, nor of an extent test that a plugin did not show. */

@@ -190,8 +190,7 @@ RtStatus rt_explore_write(const char *path, const char *name, RtAccel *const *ac
     RtOutput output;
     RT_TRY(rt_explore_available(error));
     if (rt_geometry_id_count(&accels[0]->scene->geometry) > MOST_IDS) /* a byte each, before compression */
-        return rt_fail(error, RT_BAD_INPUT, "a page holds at most %d objects, those in instances counted",
-                       MOST_IDS);
+        return rt_fail(error, RT_BAD_INPUT, "a page holds at most %d objects, with copies", MOST_IDS);
     RT_TRY(rt_output_open(&output, path, error));
     RtStatus status = rt_recorded_pixels_make(&recording, accels, count, options, error);
     if (status == RT_OK) {

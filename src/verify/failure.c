@@ -116,9 +116,8 @@ RtStatus rt_near_save(const RtScene *scene, const RtWrongAnswer *wrong, const ch
     char says[512];
     const uint32_t all = rt_geometry_id_count(&scene->geometry);
     const bool copied = scene->geometry.instance_count > 0;
-    RtError why;
     *count = 0;
-    if (copied && (all > MOST_OBJECTS || rt_scene_flatten(scene, &flat, &why) != RT_OK)) return RT_OK;
+    if (copied && (all > MOST_OBJECTS || rt_scene_flatten(scene, &flat, NULL) != RT_OK)) return RT_OK;
     uint32_t *ids = rt_arena_alloc(&memory, all, sizeof(uint32_t));
     RT_TRY(rt_arena_check(&memory, "ids of objects", error));
     RT_TRY(find_near(scene, wrong, ids, count, error));

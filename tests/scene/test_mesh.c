@@ -32,7 +32,7 @@ RT_TEST(a_mesh_goes_where_its_transform_puts_it) {
     assert_ok(rt_transform_translate(&transform, rt_vec3(0, 0, 5), error));
     write_text(OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     OWNED_SCENE scene = begin_scene();
-    assert_ok(rt_mesh_append(&scene, OBJ_NAME, 0, &transform, error));
+    assert_ok(rt_mesh_append(&scene, OBJ_NAME, 0, &transform, false, error));
     const RtVec3 *v = scene.geometry.triangles[0].v;
     assert_true(v[0].z == 5 && v[1].x == 2 && v[2].y == 2);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The document of a glTF file, its buffers, and the numbers in them: what mesh_gltf.c makes meshes of. Every
- * member is checked where it is read. A buffer is read when it is first used, and what is read of it is
- * inside it. */
+/* The document of a glTF file, its buffers, and the numbers in them, of which mesh_gltf.c makes meshes. Every
+ * member is checked where it is read. A buffer is read at its first use, and what is read of it is inside it.
+ */
 #ifndef RT_SCENE_GLTF_H
 #define RT_SCENE_GLTF_H
 
@@ -42,10 +42,8 @@ __attribute__((format(printf, 3, 4))) RtStatus rt_gltf_fail(const RtGltf *g, con
 RtStatus rt_gltf_find(const RtGltf *g, const RtGltfItem *owner, const json_t *reference, const char *list,
                       RtGltfItem *item);
 
-/* -1 if it is none; a number may be written as 3.0. */
+/* A number, which may be written as 3.0, or -1; and whether it is an integer from 0 to below `count`. */
 double rt_gltf_number(const json_t *member);
-
-/* Whether it is an integer from 0 to below `count`. */
 bool rt_gltf_is_index(double value, double count);
 
 /* Gets the integer `key`, or `otherwise` if there is none. Rejects less than `least`, so an `otherwise` below

@@ -65,8 +65,8 @@ static RtStatus fail_empty(const RtMeshReader *r) {
         warned ? warnings->list[warnings->first].message : "");
 }
 
-static RtStatus append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
-                       bool whole, RtError *error) {
+RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
+                        bool whole, RtError *error) {
     RtError own;
     char *data;
     size_t size, number;
@@ -96,17 +96,12 @@ static RtStatus append(RtScene *scene, const char *path, uint32_t material, cons
     return status;
 }
 
-RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
-                        RtError *error) {
-    return append(scene, path, material, transform, false, error);
-}
-
 RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error) {
     uint32_t material;
     RtMaterial standard = rt_default_material();
     scene->camera.up = rt_vec3(0, 1, 0);
     RT_TRY(rt_scene_add_material(scene, &standard, &material, error));
-    return append(scene, path, material, NULL, true, error);
+    return rt_mesh_append(scene, path, material, NULL, true, error);
 }
 
 static RtStatus check_shapes(const RtGeometry *g, const char *extension, RtError *error) {

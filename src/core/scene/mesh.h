@@ -31,10 +31,11 @@ enum { RT_MESH_WRITTEN = 4 };
 const char *rt_mesh_extension(size_t i);
 
 /* Adds the triangles of `path` to the scene with `material` (OBJ: or its own, with images), moved by
- * `transform` (NULL: in place). After a failure some may remain, and the scene must be cleared. Rejects
- * damaged files, files without triangles, and faces with vertices that are not finite. */
+ * `transform` (NULL: in place). `whole`: nothing else is added, so there may be instances. After a failure
+ * some may remain, and the scene must be cleared. Rejects damaged files, files without triangles, and faces
+ * with vertices that are not finite. */
 RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
-                        RtError *error);
+                        bool whole, RtError *error);
 
 /* Reads a mesh file into a scene from rt_scene_init: default material, +Y up. */
 RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error);

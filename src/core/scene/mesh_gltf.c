@@ -47,10 +47,8 @@ typedef struct Pose {
     RtTransform transform; /* of what has no skin */
 } Pose;
 
-enum { DEEPEST = 256 };
-
-/* Below it a ray would take longer to enter an instance than to test copies. */
-enum { PART_TRIANGLES = 100 };
+/* Below PART_TRIANGLES a ray would take longer to enter an instance than to test copies. */
+enum { DEEPEST = 256, PART_TRIANGLES = 100 };
 #define NO_PART UINT32_MAX
 
 /* ---- primitives ---- */

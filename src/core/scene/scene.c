@@ -148,8 +148,7 @@ void rt_scene_place(const RtScene *scene, uint32_t id, const RtRay *ray, RtPlace
         const RtInstance *instance = rt_instance_of(g, object);
         const uint32_t material = place->scene->material_of[object];
         if (!place->material && material != RT_OWN_MATERIALS) place->material = &scene->materials[material];
-        const RtRay outside = place->ray;
-        rt_instance_enter(instance, &outside, &place->ray);
+        rt_instance_enter(instance, &place->ray, &place->ray);
         place->to_world = rt_transform_compose(&instance->to_world, &place->to_world);
         place->object -= instance->first;
         place->scene = scene->parts[instance->part];

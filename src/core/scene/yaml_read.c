@@ -132,7 +132,7 @@ static RtStatus append_mesh(Reader *r, const RtYamlNode *object, uint32_t materi
     char path[RT_MAX_PATH];
     RT_TRY(read_transform(r, object, nowhere, &transform, &given));
     RT_TRY(get_path(r, object, "path", path));
-    RtStatus status = rt_mesh_append(scene, path, material, given, r->error);
+    RtStatus status = rt_mesh_append(scene, path, material, given, false, r->error);
     return rt_yaml_place(&r->yaml, status, object, "path");
 }
 

@@ -50,7 +50,7 @@ static inline RtFloat4 rt_instance_move(const double columns[4][4], RtFloat4 p, 
 }
 
 /* Moves a ray into the part. False if it is not a valid ray there, for coordinates beyond RT_MAX_COORDINATE
- * or a direction that vanishes: such a ray misses the instance. */
+ * or a direction that vanishes: such a ray misses the instance. `inside` may be `ray`. */
 static inline bool rt_instance_enter(const RtInstance *instance, const RtRay *ray, RtRay *inside) {
     const RtFloat4 org = rt_instance_move(instance->columns, rt_loadu4(ray->org.at), true);
     const RtFloat4 dir = rt_instance_move(instance->columns, rt_loadu4(ray->dir.at), false);
