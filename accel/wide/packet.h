@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Packets: up to sixty-four rays whose directions have the same signs and the same major axis, and how rays
- * are sorted into them.
+/* Packets: up to sixty-four rays whose directions have the same signs and the same major axis
+ * (packet_rays.h).
  *
  * Origins and directions may differ: diffuse rays of a patch of the image, sorted by direction, share most of
  * their visits near the root. A packet is a structure of arrays, so that RT_LANES rays are prepared at once,

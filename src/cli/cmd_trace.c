@@ -132,7 +132,7 @@ static void print_row(const RtPath *path, uint32_t index) {
     const RtPathPlace *place = &path->places[row->place];
     const int width = WORD_WIDTH(path), indent = 2 * (int)row->level;
     char of[RT_MAX_NAME + 32] = "";
-    if (row->kind == RT_TRACED_OBJECT_TEST && strcmp(row->what, "object") == 0)
+    if (row->kind == RT_TRACED_OBJECT_TEST && !row->instance)
         snprintf(of, sizeof of, "%s %u, %s", row->what, rt_path_row_index(path, row),
                  shape_of(&place->scene->geometry, row->index));
     else if (row->kind == RT_TRACED_PASSED_ON)

@@ -187,8 +187,7 @@ RtExactResult rt_exact_hit(const RtGeometry *geometry, uint32_t id, const RtExac
         const uint32_t object = rt_geometry_holder(geometry, id);
         if (!rt_is_instance(geometry, object)) return object_hit(geometry, object, &here, t);
         const RtInstance *instance = rt_instance_of(geometry, object);
-        const RtExactLine outside = here;
-        if (!rt_exact_enter(&outside, instance, &here)) return RT_MISSED;
+        if (!rt_exact_enter(&here, instance, &here)) return RT_MISSED;
         id -= instance->first;
         geometry = instance->geometry;
     }

@@ -113,8 +113,7 @@ static RtMarginRay follow(const RtMarginRay *ray, const RtGeometry **geometry, u
         const uint32_t object = rt_geometry_holder(*geometry, *id);
         if (!rt_is_instance(*geometry, object)) return here;
         const RtInstance *instance = rt_instance_of(*geometry, object);
-        const RtMarginRay outside = here;
-        here = enter(&outside, *geometry, object);
+        here = enter(&here, *geometry, object);
         *id -= instance->first;
         *geometry = instance->geometry;
     }

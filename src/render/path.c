@@ -5,7 +5,6 @@
 #include "render/illumination.h"
 
 #include <stdio.h>
-#include <string.h>
 
 /* ---- recording ---- */
 
@@ -95,14 +94,6 @@ static void leave(Recorder *recorder, const RtTraced *event) {
     row->t = event->t;
 }
 
-static const char *what_of(const RtTraced *event, const RtGeometry *g) {
-    if (event->kind == RT_TRACED_OBJECT_TEST ||
-        (event->kind == RT_TRACED_REPEAT_AVOIDED && event->index != RT_NO_OBJECT))
-        return event->index < g->object_count && rt_is_instance(g, event->index) ? "instance" : "object";
-    if (event->kind == RT_TRACED_ENTERED) return "part";
-    return event->what ? event->what : "";
-}
-
 static void record(void *context, const RtTraced *event) {
     Recorder *recorder = context;
     RtPath *path = recorder->path;
@@ -134,7 +125,16 @@ static void record(void *context, const RtTraced *event) {
                        .enter = INFINITY,
                        .leave = -INFINITY};
     if (event->kind == RT_TRACED_ENTERED) row->index = path->places[row->place].part;
-    snprintf(row->what, sizeof row->what, "%s", what_of(event, &path->places[row->place].scene->geometry));
+    const RtGeometry *g = &path->places[row->place].scene->geometry;
+    row->object = event->kind == RT_TRACED_OBJECT_TEST ||
+                  (event->kind == RT_TRACED_REPEAT_AVOIDED && event->index != RT_NO_OBJECT);
+    row->instance = row->object && row->index < g->object_count && rt_is_instance(g, row->index);
+    snprintf(row->what, sizeof row->what, "%s",
+             row->instance                      ? "instance"
+             : row->object                      ? "object"
+             : event->kind == RT_TRACED_ENTERED ? "part"
+             : event->what                      ? event->what
+                                                : "");
     if (event->crossings) recorder->status = note_crossings(path, event, row, recorder->error);
     if (!event->box || !row->boxed) return;
     row->box = *event->box;
@@ -150,7 +150,7 @@ static void find_nearest(RtPath *path) {
     float nearest = INFINITY;
     for (uint32_t i = 0; i < path->count; i++) {
         RtPathRow *row = &path->rows[i];
-        if (row->kind == RT_TRACED_OBJECT_TEST && row->met && strcmp(row->what, "object") == 0)
+        if (row->kind == RT_TRACED_OBJECT_TEST && row->met && !row->instance)
             nearest = rt_minf(row->t, nearest);
         row->nearest = nearest;
     }
@@ -226,8 +226,8 @@ void rt_path_clear(RtPath *path) {
 uint32_t rt_path_row_index(const RtPath *path, const RtPathRow *row) {
     const RtPathPlace *place = &path->places[row->place];
     const RtGeometry *g = &place->scene->geometry;
-    if (strcmp(row->what, "instance") == 0) return rt_ref_index(g->objects[row->index]);
-    return strcmp(row->what, "object") == 0 ? place->first + row->index : row->index;
+    if (row->instance) return rt_ref_index(g->objects[row->index]);
+    return row->object ? place->first + row->index : row->index;
 }
 
 bool rt_path_row_answers(const RtPathRow *row) {

@@ -27,6 +27,7 @@ typedef struct RtPathRow {
     uint32_t level;         /* of the place */
     char what[RT_MAX_NAME]; /* as in RtTraced; "object" or "instance" for object tests; "": nothing */
     uint32_t index;         /* as in RtTraced */
+    bool object, instance;  /* `index` is that of an object; and that is an instance */
     bool leaf, empty;       /* of a step */
     bool met;               /* extent test: something may be found there; object test: it is hit, at `t` */
     float t;

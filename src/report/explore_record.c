@@ -317,7 +317,7 @@ static bool is_hit(const RtPathRow *row) {
 static json_t *counts_of(const RtPathRow *row) {
     RtTally tally = {0};
     rt_traced_count(&(RtTraced){.kind = row->kind, .leaf = row->leaf, .empty = row->empty}, &tally);
-    tally.object_hits += is_hit(row) && strcmp(row->what, "object") == 0;
+    tally.object_hits += is_hit(row) && !row->instance;
     json_t *names = json_array();
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
         if (rt_tally_get(&tally, i)) json_array_append_new(names, json_string(rt_tally_name(i)));

@@ -221,8 +221,9 @@ static const Member workload_members[] = {
     MEMBER(RtWorkloadResult, TEXT, "warnings", warnings), MEMBER_OF("sets", &sets)};
 
 #define COST_OF_BUILD(name, meaning) MEMBER(RtBuildResult, COUNT, #name, structure.build.name),
-static const Member build_tally_members[] = {RT_OLD_TALLY_COUNTERS(COST_OF_BUILD) MEMBER(
-    RtBuildResult, ADDED_COUNT, "instances_entered", structure.build.instances_entered)};
+#define ADDED_COST(name, meaning)    MEMBER(RtBuildResult, ADDED_COUNT, #name, structure.build.name),
+static const Member build_tally_members[] = {RT_FIRST_TALLY_COUNTERS(COST_OF_BUILD)
+                                                 RT_ADDED_TALLY_COUNTERS(ADDED_COST)};
 static const Record build_tally = RECORD(build_tally_members);
 
 #define EXPECTED(name, meaning) MEMBER(RtBuildResult, NUMBER, #name, structure.name),
@@ -241,10 +242,10 @@ static const Member build_members[] = {MEMBER(RtBuildResult, COUNT, "interior", 
                                        MEMBER_RANGE(RtBuildResult, ADDED, "builds", builds, 0, RT_MAX_ROUNDS),
                                        MEMBER_RANGE(RtBuildResult, ADDED, "threads", threads, 0, 1024)};
 
-#define COUNTER(name, meaning) MEMBER(RtCell, COUNT, #name, tally.name),
-static const Member count_members[] = {
-    RT_OLD_TALLY_COUNTERS(COUNTER) MEMBER(RtCell, ADDED_COUNT, "instances_entered", tally.instances_entered),
-    MEMBER(RtCell, COUNT, "differ", differ)};
+#define COUNTER(name, meaning)       MEMBER(RtCell, COUNT, #name, tally.name),
+#define ADDED_COUNTER(name, meaning) MEMBER(RtCell, ADDED_COUNT, #name, tally.name),
+static const Member count_members[] = {RT_FIRST_TALLY_COUNTERS(COUNTER) RT_ADDED_TALLY_COUNTERS(ADDED_COUNTER)
+                                           MEMBER(RtCell, COUNT, "differ", differ)};
 
 static const Member time_members[] = {MEMBER_RANGE(RtCell, COUNT, "rays", tally.rays, 1, 0),
                                       MEMBER_RANGE(RtCell, U32, "rounds", rounds, 1, RT_MAX_ROUNDS),

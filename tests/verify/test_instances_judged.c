@@ -5,6 +5,7 @@
 #include "equivalence_testing.h"
 #include "instances_testing.h"
 #include "random_testing.h"
+#include "verify/verdict_testing.h"
 
 #include "core/base/random.h"
 #include "verify/failure.h"
@@ -12,16 +13,8 @@
 
 #include <inttypes.h>
 
-static RtVerdict verdict_of(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer) {
-    RtVerdict verdict;
-    assert_ok(rt_verdict_nearest(rt_judge(g, ray, false), expected, answer, &verdict, error));
-    return verdict;
-}
-
-/* Whatever brute says: by the margins alone. */
 static bool is_wrong(const RtGeometry *g, const RtRay *ray, RtHit answer) {
-    const RtHit any = {0, 0};
-    return verdict_of(g, ray, answer.object == RT_NO_OBJECT ? any : RT_MISS, answer) == RT_WRONG;
+    return verdict_by_margins(g, ray, answer) == RT_WRONG;
 }
 
 static bool must_be(const RtGeometry *g, const RtRay *ray) {

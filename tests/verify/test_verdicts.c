@@ -5,6 +5,7 @@
 #include "equivalence_testing.h"
 
 #include "random_testing.h"
+#include "verify/verdict_testing.h"
 
 #include "accel/kernel.h"
 
@@ -41,18 +42,6 @@ static RtRay ray_to(RtVec3 org, RtVec3d to) {
 
 static bool is_ray(const RtRay *ray) {
     return ray->dir.x != 0 || ray->dir.y != 0 || ray->dir.z != 0;
-}
-
-static RtVerdict verdict_of(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer) {
-    RtVerdict verdict;
-    assert_ok(rt_verdict_nearest(rt_judge(g, ray, false), expected, answer, &verdict, error));
-    return verdict;
-}
-
-/* The same whatever brute says: by the margins alone. */
-static RtVerdict verdict_by_margins(const RtGeometry *g, const RtRay *ray, RtHit answer) {
-    const RtHit any = {0, 0};
-    return verdict_of(g, ray, answer.object == RT_NO_OBJECT ? any : RT_MISS, answer);
 }
 
 /* ---- careful float32 triangle tests ---- */

@@ -12,12 +12,13 @@
 #include <stdint.h>
 
 /* X(name, meaning) */
-#define RT_TALLY_COUNTERS(X)                                                                                 \
-    RT_OLD_TALLY_COUNTERS(X)                                                                                 \
+#define RT_TALLY_COUNTERS(X) RT_FIRST_TALLY_COUNTERS(X) RT_ADDED_TALLY_COUNTERS(X)
+
+/* Results of earlier versions lack these. */
+#define RT_ADDED_TALLY_COUNTERS(X)                                                                           \
     X(instances_entered, "rays moved into a part, after the object test of its instance")
 
-/* Those that results of every version have. */
-#define RT_OLD_TALLY_COUNTERS(X)                                                                             \
+#define RT_FIRST_TALLY_COUNTERS(X)                                                                           \
     X(rays, "rays traced")                                                                                   \
     X(hits, "rays that hit an object")                                                                       \
     X(object_tests,                                                                                          \
