@@ -66,8 +66,17 @@ typedef struct RtMailbox {
     uint32_t last[]; /* [object_count] */
 } RtMailbox;
 
-static inline size_t rt_mailbox_bytes(const RtGeometry *geometry) {
-    return sizeof(RtMailbox) + geometry->object_count * sizeof(uint32_t);
+/* In a build: with a mailbox or without. Without, an instance is entered in each voxel, and at each level
+ * again: instances in instances are refused. */
+static inline RtStatus rt_set_mailbox(RtAccel *accel, bool on, RtError *error) {
+    const RtGeometry *g = &accel->scene->geometry;
+    if (on) accel->scratch_bytes = sizeof(RtMailbox) + g->object_count * sizeof(uint32_t);
+    if (on || g->nesting < 2) return RT_OK;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "%s: mailbox=off would enter instances in instances once for each voxel that they are in: take "
+        "mailbox=on, or flatten the scene by `raytally convert --flatten`",
+        accel->ops->name);
 }
 
 /* Call before each ray. The mailbox may be NULL. */

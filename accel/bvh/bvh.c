@@ -63,9 +63,8 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
                                    .reinsertion = (uint32_t)values[PARAM_REINSERTION].i,
                                    .batch = 1};
     RT_TRY(rt_hierarchy_build(&self->hierarchy, &accel->memory, geometry, &options, what->threads, error));
-    if (values[PARAM_MAILBOX].flag && self->hierarchy.split_refs)
-        accel->scratch_bytes = rt_mailbox_bytes(geometry);
-    return RT_OK;
+    if (!self->hierarchy.split_refs) return RT_OK;
+    return rt_set_mailbox(accel, values[PARAM_MAILBOX].flag, error);
 }
 
 /* ---- queries ---- */

@@ -436,7 +436,7 @@ RtStatus rt_grid_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtValue *values = what->values;
     RtGrid *grid = (RtGrid *)accel;
     grid->box = g->box;
-    if (values[RT_GRID_MAILBOX].flag) accel->scratch_bytes = rt_mailbox_bytes(g);
+    RT_TRY(rt_set_mailbox(accel, values[RT_GRID_MAILBOX].flag, error));
     grid->surfaces = values[RT_GRID_OVERLAP].choice == RT_GRID_EXACT;
     grid->slack = values[RT_GRID_SLACK].f;
     if (g->object_count == 0) return RT_OK;

@@ -336,7 +336,7 @@ RtStatus rt_kd_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     kd->max_leaf_size = (uint32_t)values[RT_KD_MAX_LEAF_SIZE].i;
     kd->max_depth = depth < 0 ? usual_depth(g->object_count) : (uint32_t)depth;
     kd->failures = (uint32_t)values[RT_KD_FAILURES].i;
-    if (values[RT_KD_MAILBOX].flag) accel->scratch_bytes = rt_mailbox_bytes(g);
+    RT_TRY(rt_set_mailbox(accel, values[RT_KD_MAILBOX].flag, error));
     kd->surfaces = values[RT_KD_OVERLAP].choice == OVERLAP_EXACT;
     if (g->object_count == 0) return RT_OK;
     kd->box = rt_box_widened(g->box, values[RT_KD_MARGIN].f);

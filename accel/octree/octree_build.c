@@ -362,7 +362,7 @@ RtStatus rt_octree_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     tree->slack = values[RT_OCTREE_SLACK].f;
     tree->flat = values[RT_OCTREE_FLAT].f;
     tree->cut_filled = values[RT_OCTREE_CUT_FILLED].flag;
-    if (values[RT_OCTREE_MAILBOX].flag) accel->scratch_bytes = rt_mailbox_bytes(g);
+    RT_TRY(rt_set_mailbox(accel, values[RT_OCTREE_MAILBOX].flag, error));
     if (g->object_count == 0) return RT_OK;
     RtBox root = g->box;
     for (uint32_t i = 0; i < g->object_count; i++)

@@ -117,6 +117,19 @@ RT_TEST(instances_may_be_nested_eight_deep) {
     assert_exact_on(scene, RT_SHARE(20, 4));
 }
 
+/* Each voxel would enter them again, at each level. */
+RT_TEST(nested_instances_need_a_mailbox) {
+    static const char *const without[] = {"grid:mailbox=off", "kd:mailbox=off", "octree:mailbox=off",
+                                          "bvh/grid:mailbox=off"};
+    OWNED_SCENE one_level = nested(1), two_levels = nested(2), three_levels = nested(3);
+    rt_accel_destroy(open_valid(&two_levels, without[3]));
+    for (size_t i = 0; i < 4; i++) {
+        RtAccel *accel = NULL;
+        rt_accel_destroy(open_valid(&one_level, without[i]));
+        assert_bad_input(rt_accel_open(without[i], &three_levels, &accel, error), "take mailbox=on");
+    }
+}
+
 RT_TEST(instances_may_share_faces) {
     RtScene scene = begin_scene(), part = begin_scene();
     for (uint32_t i = 0; i < 6; i++) { /* the sides of a unit cube */
