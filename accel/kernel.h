@@ -66,17 +66,13 @@ typedef struct RtMailbox {
     uint32_t last[]; /* [object_count] */
 } RtMailbox;
 
-/* In a build: with a mailbox or without. Without, an instance is entered in each voxel, and at each level
- * again: instances in instances are refused. */
+/* Gives a layer that is being built a mailbox, or none, where instances in instances are refused: each voxel
+ * would enter them again, at each level. */
 static inline RtStatus rt_set_mailbox(RtAccel *accel, bool on, RtError *error) {
     const RtGeometry *g = &accel->scene->geometry;
-    if (on) accel->scratch_bytes = sizeof(RtMailbox) + g->object_count * sizeof(uint32_t);
+    accel->scratch_bytes = on ? sizeof(RtMailbox) + g->object_count * sizeof(uint32_t) : 0;
     if (on || g->nesting < 2) return RT_OK;
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "%s: mailbox=off would enter instances in instances once for each voxel that they are in: take "
-        "mailbox=on, or flatten the scene by `raytally convert --flatten`",
-        accel->ops->name);
+    return rt_fail(error, RT_BAD_INPUT, "%s: instances in instances need mailbox=on", accel->ops->name);
 }
 
 /* Call before each ray. The mailbox may be NULL. */

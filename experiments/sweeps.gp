@@ -33,7 +33,7 @@ do for [k = 1:words(sweeps)] {
     if (m == 1) { stats data using (note_panel(strcol(1)) + note_flat(strcol(1)) + note_line(strcol(2)) + note_value(strcol(6))) nooutput }
     n_lines = words(lines); n_panels = words(panels); n_values = words(values)
     v = value_column[m]
-    stats data using (column(v) > 0 ? 1 : 0) nooutput
+    stats data using (valid(v) && column(v) > 0 ? 1 : 0) nooutput # of nothing but blanks, gnuplot 6 has no sum
     if (STATS_sum > 0) {
       number = number + 1
       stats data using (column(v) > 0 ? column(v) : NaN) nooutput

@@ -282,8 +282,7 @@ static Instancing instancing(const Recipe *recipe) {
     case ON_A_LATTICE: return (Instancing){1, 0, 0, 27};
     case COINCIDENT: return (Instancing){3, 4, 0, 3 * COINCIDENT_COUNT};
     case HUGE_BESIDE_TINY: return (Instancing){3, 4, 0, 16};
-    case CONCENTRIC:
-        return (Instancing){4, 1, 0, 2}; /* costs of levels multiply where objects are tested twice */
+    case CONCENTRIC: return (Instancing){4, 1, 0, 2}; /* the costs of levels may multiply */
     default: return (Instancing){6, 4, 2, 16};
     }
 }
@@ -304,11 +303,8 @@ static RtTransform near_singular(Family *f, uint32_t i) {
                                        {1, 2e-3f, 5e2f}, {1, 1, 4e-6f},  {1, 0.01f, 0.1f}};
     RtTransform t = rt_transform_identity();
     const float *by = factors[i % 6];
-    if (i % 7 == 6) {
-        t.m[0][1] = 998;
-        return t;
-    }
-    for (int turn = 0; turn < 2; turn++) {
+    if (i % 7 == 6) t.m[0][1] = 998;
+    for (int turn = 0; turn < 2 && i % 7 < 6; turn++) {
         const double degrees = i < 6 ? 0 : rt_random_betweend(&f->random, 0, 360);
         const RtVec3 axis = rt_narrow(rt_random_direction(&f->random));
         rt_build_check(f->b, rt_transform_rotate(&t, axis, degrees, f->b->error));
@@ -363,9 +359,9 @@ static void add_instance(Family *f, RtScene *to, const RtScene *of, uint32_t i) 
         const uint32_t turn = place == COINCIDENT ? i / COINCIDENT_COUNT : i;
         RtTransform at = place == ON_A_LATTICE ? in_a_row(i) : some_matrix(f, turn);
         if (to == of) at = rt_transform_compose(&at, &f->b->transform);
-        const uint32_t part = f->recipe->place == CONCENTRIC ? of->part_count - 1
-                              : place == COINCIDENT          ? turn
-                                                             : rt_random_below(&f->random, of->part_count);
+        const uint32_t part = place == CONCENTRIC   ? of->part_count - 1
+                              : place == COINCIDENT ? turn
+                                                    : rt_random_below(&f->random, of->part_count);
         status = rt_scene_add_instance(to, of, part, &at, i % 3 ? RT_OWN_MATERIALS : 0, f->b->error);
     }
     rt_build_check(f->b, status);

@@ -263,10 +263,7 @@ static RtStatus check_width(const RtBox *box, double stretch, RtError *error) {
 
 /* Embree's own instances are of one level, and stretch the directions of rays. */
 static RtStatus check_instances(const RtGeometry *g, RtError *error) {
-    if (g->nesting > 1)
-        return rt_fail(error, RT_BAD_INPUT,
-                       "embree: mode=native has no instances in instances: take mode=user, or flatten the "
-                       "scene by `raytally convert --flatten`");
+    if (g->nesting > 1) return rt_fail(error, RT_BAD_INPUT, "embree: instances in instances need mode=user");
     for (uint32_t i = 0; i < g->instance_count; i++) {
         const RtInstance *instance = &g->instances[i];
         double stretch = 0;

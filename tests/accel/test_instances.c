@@ -126,7 +126,7 @@ RT_TEST(nested_instances_need_a_mailbox) {
     for (size_t i = 0; i < 4; i++) {
         RtAccel *accel = NULL;
         rt_accel_destroy(open_valid(&one_level, without[i]));
-        assert_bad_input(rt_accel_open(without[i], &three_levels, &accel, error), "take mailbox=on");
+        assert_bad_input(rt_accel_open(without[i], &three_levels, &accel, error), "instances in instances need mailbox=on");
     }
 }
 

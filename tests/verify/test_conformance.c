@@ -21,8 +21,8 @@ static size_t rays_per_family = 64;
 /* What would take too much memory is refused, with a value that fits. */
 static const char too_large[] = "would fit";
 
-/* Embree's own have one level, and lists without a mailbox. */
-static const char nested[] = "instances in instances";
+/* Neither Embree's own nor lists without a mailbox have more than one level. */
+static const char nested[] = "instances in instances need";
 
 static void every_accelerator_answers_like_brute(void **state) {
     FamilyBench bench;
