@@ -358,6 +358,7 @@ static void add_instance(Family *f, RtScene *to, const RtScene *of, uint32_t i) 
     for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++) {
         const uint32_t turn = place == COINCIDENT ? i / COINCIDENT_COUNT : i;
         RtTransform at = place == ON_A_LATTICE ? in_a_row(i) : some_matrix(f, turn);
+        for (int c = 0; c < 4 && place == AROUND_THE_ORIGIN; c++) at.m[i % 3][c] *= -1;
         if (to == of) at = rt_transform_compose(&at, &f->b->transform);
         const uint32_t part = place == CONCENTRIC   ? of->part_count - 1
                               : place == COINCIDENT ? turn
@@ -467,7 +468,8 @@ static void add_eye(RtSceneBuilder *b) {
     X("instanced-side-by-side", 0, INSTANCED, ON_A_LATTICE, 1, 0, GIVEN, CAMERA)                             \
     X("instanced-coincident", 8, INSTANCED, COINCIDENT, 1, 0, GIVEN, CAMERA)                                 \
     X("instanced-nested", 2, INSTANCED, CONCENTRIC, 1, 0, GIVEN, CAMERA)                                     \
-    X("instanced-stretched", 4, INSTANCED, HUGE_BESIDE_TINY, 1, 0, GIVEN, CAMERA)
+    X("instanced-stretched", 4, INSTANCED, HUGE_BESIDE_TINY, 1, 0, GIVEN, CAMERA)                            \
+    X("instanced-mirrored", 8, INSTANCED, AROUND_THE_ORIGIN, 1, 0, GIVEN, CAMERA)
 
 #define AS_RECIPE(...)       {__VA_ARGS__},
 #define AS_CHOICE(name, ...) "|" name

@@ -297,29 +297,17 @@ RT_KERNEL void start_next_ray(const Query *q, RayQueues *t, RayState *f, bool an
 typedef struct Waiting {
     uint32_t count;
     RayState *ray[RT_WIDE_MAX_STATES];
-    bool over[RT_WIDE_MAX_STATES];       /* the search is */
-    RtEntry entry[RT_WIDE_MAX_STATES];   /* into an instance */
-    RtRay inside[RT_WIDE_MAX_STATES];    /* moved into its part */
-    uint32_t object[RT_WIDE_MAX_STATES]; /* that instance */
+    bool over[RT_WIDE_MAX_STATES];                                 /* the search is */
+    RtEntry entry[RT_WIDE_MAX_STATES];                             /* into an instance */
+    RtRay inside[RT_WIDE_MAX_STATES];                              /* moved into its part */
+    uint32_t object[RT_WIDE_MAX_STATES], part[RT_WIDE_MAX_STATES]; /* that instance, and its part */
 } Waiting;
-
-/* Sorts numbers of waiting rays by the byte at `shift` of the part that they enter; keeps their order. */
-static inline void sort_by_part(const Query *q, const Waiting *w, uint32_t *rays, uint32_t count,
-                                uint32_t shift) {
-    uint32_t ends[257] = {0}, sorted[RT_WIDE_MAX_STATES];
-    for (uint32_t i = 0; i < count; i++)
-        ends[1 + (rt_instance_of(q->geometry, w->object[rays[i]])->part >> shift & 255)]++;
-    for (uint32_t i = 1; i < 257; i++) ends[i] += ends[i - 1];
-    for (uint32_t i = 0; i < count; i++)
-        sorted[ends[rt_instance_of(q->geometry, w->object[rays[i]])->part >> shift & 255]++] = rays[i];
-    memcpy(rays, sorted, count * sizeof *rays);
-}
 
 /* Tests object `slot` of the leaf at which each ray waits. */
 RT_KERNEL void test_slot(const Query *q, Waiting *w, uint32_t slot, bool any, bool counted) {
     const RtGeometry *g = q->geometry;
     const RtQuery *parts = q->scratch->hit_memory->parts;
-    uint32_t rays[RT_WIDE_MAX_STATES], occluders[RT_WIDE_MAX_STATES], count = 0, last_part = 0;
+    uint32_t rays[RT_WIDE_MAX_STATES], asked[RT_WIDE_MAX_STATES], occluders[RT_WIDE_MAX_STATES], left = 0;
     RtRay inside[RT_WIDE_MAX_STATES];
     RtHit hits[RT_WIDE_MAX_STATES];
     for (uint32_t i = 0; i < w->count; i++) {
@@ -333,27 +321,28 @@ RT_KERNEL void test_slot(const Query *q, Waiting *w, uint32_t slot, bool any, bo
         } else if (rt_enter_begin(g, id,
                                   span_ray(&ray, &q->rays[f->index], rt_loadu4(f->inv), f->tmin, f->tmax),
                                   &f->best, &w->entry[i], &w->inside[i], tally)) {
-            const uint32_t part = rt_instance_of(g, id)->part;
-            if (part > last_part) last_part = part;
-            rays[count++] = i;
+            w->part[i] = rt_instance_of(g, id)->part;
+            rays[left++] = i;
         }
     }
-    for (uint32_t shift = 0; shift < 32 && last_part >> shift; shift += 8)
-        sort_by_part(q, w, rays, count, shift);
-    for (uint32_t first = 0, end; first < count; first = end) {
-        const uint32_t part = rt_instance_of(g, w->object[rays[first]])->part;
-        for (end = first; end < count && rt_instance_of(g, w->object[rays[end]])->part == part; end++)
-            inside[end] = w->inside[rays[end]];
-        rt_trace_stream(parts[part].accel, parts[part].scratch, inside + first, end - first,
-                        any ? NULL : hits + first, any ? occluders + first : NULL,
-                        counted ? q->tallies : NULL);
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        const uint32_t k = rays[i];
-        const RtHit hit = any ? (RtHit){0, occluders[i]} : hits[i];
-        RtTally *tally = counted ? w->ray[k]->tally : NULL;
-        w->over[k] =
-            rt_enter_end(rt_instance_of(g, w->object[k]), &w->entry[k], hit, any, &w->ray[k]->best, tally);
+    while (left > 0) { /* one part after the other */
+        const uint32_t part = w->part[rays[0]], waiting = left;
+        uint32_t count = 0;
+        left = 0;
+        for (uint32_t i = 0; i < waiting; i++) {
+            if (w->part[rays[i]] == part)
+                inside[count] = w->inside[rays[i]], asked[count++] = rays[i];
+            else
+                rays[left++] = rays[i];
+        }
+        rt_trace_stream(parts[part].accel, parts[part].scratch, inside, count, any ? NULL : hits,
+                        any ? occluders : NULL, counted ? q->tallies : NULL);
+        for (uint32_t i = 0; i < count; i++) {
+            const uint32_t k = asked[i];
+            w->over[k] = rt_enter_end(rt_instance_of(g, w->object[k]), &w->entry[k],
+                                      any ? (RtHit){0, occluders[i]} : hits[i], any, &w->ray[k]->best,
+                                      counted ? w->ray[k]->tally : NULL);
+        }
     }
 }
 

@@ -132,7 +132,7 @@ RT_TEST(validate_misses_a_part_of_a_split_object) {
 
 /* ---- hostile rays ---- */
 
-enum { RAYS = 300 };
+enum { RAYS = RT_SHARE(300, 100) };
 
 static void assert_like_brute(const RtScene *scene, const char *spec, uint64_t seed) {
     OWNED_ACCEL RtBvh *bvh = open_valid(scene, spec);
@@ -161,7 +161,7 @@ RT_TEST(hostile_rays_hit_like_brute) {
                            "bvh:build=spatial,alpha=0,budget=16,max_leaf_size=1,traversal_cost=0",
                            "bvh:build=spatial,reinsertion=2,mailbox=off,budget=4"};
     const float scales[] = {1, 1, 1, 1e-20f, 1e16f, 0.01f}, offsets[] = {0, 1e6f, 1e5f, 0, 0, -3000};
-    for (uint64_t round = 0; round < 18; round++) {
+    for (uint64_t round = 0; round < RT_SHARE(18, 6); round++) {
         OWNED_SCENE scene = make_slivers(160, round, scales[round % 6], offsets[round % 6]);
         for (int s = 0; s < 3; s++) assert_like_brute(&scene, specs[s], round);
     }

@@ -25,7 +25,7 @@ static RtTally check_like_brute(const char *spec, const RtScene *scene, const Rt
 
 /* ---- lights in awkward places ---- */
 
-enum { AWKWARD_RAYS = 40000 };
+enum { AWKWARD_RAYS = RT_SHARE(40000, 4000) };
 
 /* Rays from anywhere, from vertices and poles, and from points just off the edges between cells. */
 static void make_awkward_rays(const RtScene *scene, RtRay *rays, float away) {
@@ -67,7 +67,7 @@ RT_TEST(lights_in_awkward_places_are_answered_like_brute) {
  * error of 2^-24 of that, which is 2^-14 of the distance to the light: rays that miss by less are said to
  * hit, from the cells beside. */
 static void check_far_off(float size, float in, const char *spec) {
-    enum { COUNT = 100000 };
+    enum { COUNT = RT_SHARE(100000, 10000) };
     static RtRay rays[COUNT];
     const RtVec3 light = {{0.1f, 0.2f, 0.3f}};
     const float a = size - in, b = -size + 3 * in;
@@ -103,7 +103,7 @@ RT_TEST(rounding_far_off_is_within_the_margin) {
 
 /* What a sphere over half of a cell does not hide is seen, without asking below. */
 RT_TEST(a_partial_occluder_hides_nothing_beside_it) {
-    enum { COUNT = 20000 };
+    enum { COUNT = RT_SHARE(20000, 4000) };
     static RtRay rays[COUNT];
     const char *specs[] = {"light:cells=1+brute", "light:cells=3+brute", "light:cells=16+brute",
                            "light:cells=61,longest=3+brute"};

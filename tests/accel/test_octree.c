@@ -151,7 +151,7 @@ RT_TEST(every_traversal_answers_like_brute_in_every_structure) {
                                            "max_leaf_size=1,max_depth=6,mailbox=off"};
     for (size_t s = 0; s < rt_family_count(); s++) {
         OWNED_BENCH bench;
-        set_up_family(&bench, s, 7, 32);
+        set_up_family(&bench, s, 7, RT_SHARE(32, 16));
         for (size_t i = 0; i < 12; i++) {
             char spec[RT_MAX_SPEC_CHARS];
             snprintf(spec, sizeof spec, "octree:traversal=%s,%s", traversals[i % 3], settings[i / 3]);

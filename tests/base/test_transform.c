@@ -51,6 +51,15 @@ RT_TEST(a_normal_stays_across_its_squeezed_plane) {
     assert_true(normal.x > 0 && normal.y > 0);
 }
 
+RT_TEST(a_normal_that_points_out_points_out_of_a_mirror_image) {
+    RtTransform t = rt_transform_identity();
+    assert_false(rt_transform_mirrors(&t));
+    t.m[0][0] = -1;
+    assert_true(rt_transform_mirrors(&t));
+    const RtVec3d normal = rt_transform_normald(&t, rt_vec3d(1, 2, 3));
+    assert_true(normal.x == -1 && normal.y == 2 && normal.z == 3);
+}
+
 RT_TEST(steps_that_make_no_sense_are_refused) {
     RtTransform t = rt_transform_identity();
     assert_bad_input(rt_transform_scale(&t, rt_vec3(1, 0, 1), error), "above 0");

@@ -35,7 +35,7 @@ static const RtRayKind kinds[] = {RT_RAY_PRIMARY, RT_RAY_SHADOW, RT_RAY_REFLECTI
 /* Primary rays over the image, and the rays that follow from them where there are any; counted by kind. */
 static void assert_paths_add_up(RtAccel *accel, const char *spec, uint32_t compared[RT_RAY_KIND_COUNT]) {
     const RtSampling *sampling = &accel->scene->sampling;
-    for (uint32_t i = 0; i < 40; i++) {
+    for (uint32_t i = 0; i < RT_SHARE(40, 12); i++) {
         RtRay ray;
         RtError error;
         uint32_t column = i * 7 % sampling->columns, row = i * 11 % sampling->rows;

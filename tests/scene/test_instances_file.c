@@ -27,8 +27,6 @@ static const struct {
      "4:16:", "the length of the list is 11"},
     {PARTS "instances:\n- {part: ball, place: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]}\n",
      "4:16:", "factors from inf to 1"},
-    {PARTS "instances:\n- {part: ball, place: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0]}\n",
-     "4:16:", "and mirrors"},
     {PARTS "instances:\n- {part: ball, transform: [{stretch: [1e7, 1, 1]}]}\n", "4:16:", "from 1 to 1e+07"},
     {PARTS "instances:\n- {part: ball, scale: 2}\n", "4:16:", "unknown key 'scale'"},
     {PARTS "instances:\n- {part: ball, material: red}\n", "4:26:", "no material 'red'"},
@@ -189,6 +187,38 @@ RT_TEST(a_flattened_scene_is_that_of_copies_made_by_hand) {
     flat.lights[0] = by_hand.lights[0];
     assert_true(rt_scene_fingerprint(&flat) == rt_scene_fingerprint(&by_hand));
     rt_scene_clear(&flat);
+}
+
+#define MIRRORED(objects)                                                                                    \
+    "parts: [{name: a, objects: [" objects "]}]\n"                                                           \
+    "instances: [{part: a, place: [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}]\n"
+
+RT_TEST(mirrored_copies_keep_the_outside_out) {
+    OWNED_SCENE scene = yaml_scene(
+                    MIRRORED("{triangle: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}}, "
+                             "{polygon: {vertices: [[0, 0, 1], [1, 0, 1], [2, 1, 1], [0, 1, 1]]}}")),
+                by_hand =
+                    yaml_scene("objects:\n"
+                               "- triangle: {vertices: [[0, 1, 0], [-1, 0, 0], [0, 0, 0]]}\n"
+                               "- polygon: {vertices: [[0, 1, 1], [-2, 1, 1], [-1, 0, 1], [0, 0, 1]]}\n"),
+                of_solids =
+                    yaml_scene("solids: [{name: s, sphere: {center: [0, 0, 0], radius: 1}}]\n" MIRRORED(
+                        "csg: {formula: s}"));
+    RtScene flat;
+    const RtRay ray = {.org = {{-0.25f, 0.25f, 9}}, .dir = {{0, 0, -1}}, .tmax = INFINITY};
+    assert_ok(rt_scene_flatten(&scene, &flat, error));
+    flat.camera = by_hand.camera;
+    flat.lights[0] = by_hand.lights[0];
+    assert_true(rt_scene_fingerprint(&flat) == rt_scene_fingerprint(&by_hand));
+    for (uint32_t id = 0; id < 2; id++) {
+        RtPlace at;
+        rt_scene_place(&scene, id, &ray, &at);
+        const RtVec3d n = rt_object_normals(&at.scene->geometry, at.object, &at.ray, 9, NULL).geometric,
+                      outside = rt_transform_normald(&at.to_world, n);
+        assert_true(outside.z > 0 && rt_object_normals(&flat.geometry, id, &ray, 9, NULL).geometric.z > 0);
+    }
+    rt_scene_clear(&flat);
+    assert_bad_input(rt_scene_flatten(&of_solids, &flat, error), "no mirrored copies");
 }
 
 /* The material of the object, as rays that hit it see it. */

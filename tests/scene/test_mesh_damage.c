@@ -365,7 +365,7 @@ RT_TEST(deeply_nested_gltf_is_refused) {
     assert_bad_input(load_bytes("gltf", text, sizeof text, &scene, error), "maximum parsing depth reached");
 }
 
-/* Each of `nodes` places `nodes` primitives, of a triangle each, that share as many vertices; mirrored, so
+/* Each of `nodes` places `nodes` primitives, of a triangle each, that share as many vertices; squeezed flat, so
  * that they become no instances. */
 static RtStatus load_repeated(int nodes, RtScene *scene, RtError *problem) {
     static char text[100000];
@@ -374,7 +374,7 @@ static RtStatus load_repeated(int nodes, RtScene *scene, RtError *problem) {
     for (int i = 0; i < nodes; i++) size += (size_t)sprintf(text + size, "%s" item, i ? "," : "", i)
     REPEAT("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"extras\":%d}");
     size += (size_t)sprintf(text + size, "]}],\"nodes\":[");
-    REPEAT("{\"mesh\":0,\"scale\":[-1,1,1],\"extras\":%d}");
+    REPEAT("{\"mesh\":0,\"scale\":[0,1,1],\"extras\":%d}");
     size += (size_t)sprintf(text + size, "],\"scenes\":[{\"nodes\":[");
     REPEAT("%d");
     size += (size_t)sprintf(

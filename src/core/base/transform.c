@@ -28,7 +28,8 @@ RtStatus rt_transform_scale(RtTransform *transform, RtVec3 factors, RtError *err
     RT_TRY(check_finite(factors, "the scale", error));
     if (!(factors.x > 0 && factors.y > 0 && factors.z > 0))
         return rt_fail(error, RT_BAD_INPUT,
-                       "the scale is (%g, %g, %g): every factor must be above 0 (mirrors are not supported)",
+                       "the scale is (%g, %g, %g): every factor must be above 0 (only the `place` of an "
+                       "instance may mirror)",
                        (double)factors.x, (double)factors.y, (double)factors.z);
     RtTransform step = rt_transform_identity();
     for (int a = 0; a < 3; a++) step.m[a][a] = (double)factors.at[a];
@@ -101,14 +102,19 @@ RtStatus rt_transform_invert(const RtTransform *transform, RtTransform *inverse,
     }
     const double most = stretch(transform), least = 1 / stretch(inverse),
                  limit = RT_MAX_STRETCH * (1 + 0x1p-22);
-    if (determinant > 0 && most <= limit && least >= 1 / limit && most <= least * limit &&
+    if (most <= limit && least >= 1 / limit && most <= least * limit &&
         isfinite(inverse->m[0][3] + inverse->m[1][3] + inverse->m[2][3]))
         return RT_OK;
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "the matrix of an instance scales by factors from %.3g to %.3g%s: between 1e-6 and 1e6, at "
-        "most a factor of 1e6 apart, and no mirror, can be undone",
-        least, most, determinant < 0 ? " and mirrors" : "");
+    return rt_fail(error, RT_BAD_INPUT,
+                   "the matrix of an instance scales by factors from %.3g to %.3g: between 1e-6 and 1e6, at "
+                   "most a factor of 1e6 apart, can be undone",
+                   least, most);
+}
+
+bool rt_transform_mirrors(const RtTransform *transform) {
+    RtVec3d x = rt_transform_column(transform, 0), y = rt_transform_column(transform, 1),
+            z = rt_transform_column(transform, 2);
+    return rt_dotd(rt_crossd(x, y), z) < 0;
 }
 
 RtVec3d rt_transform_normald(const RtTransform *transform, RtVec3d normal) {
@@ -116,7 +122,8 @@ RtVec3d rt_transform_normald(const RtTransform *transform, RtVec3d normal) {
             z = rt_transform_column(transform, 2);
     RtVec3d sum = rt_scaled(rt_crossd(y, z), normal.x);
     sum = rt_add_scaledd(sum, rt_crossd(z, x), normal.y);
-    return rt_add_scaledd(sum, rt_crossd(x, y), normal.z);
+    sum = rt_add_scaledd(sum, rt_crossd(x, y), normal.z);
+    return rt_transform_mirrors(transform) ? rt_scaled(sum, -1) : sum;
 }
 
 RtVec3 rt_transform_normal(const RtTransform *transform, RtVec3 normal) {

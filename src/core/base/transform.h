@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Affine transforms in double: they place meshes and built-in scenes in a scene.
  *
- * A point p (a column vector) maps to m[.][0..2] p + m[.][3]. Transforms keep the orientation of space
- * (determinant above 0), because mirrors would turn surfaces inside out; no function here creates a
- * mirror. */
+ * A point p (a column vector) maps to m[.][0..2] p + m[.][3]. No function here creates a mirror (determinant
+ * below 0), which would turn surfaces inside out: instances and meshes may have one. */
 #ifndef RT_BASE_TRANSFORM_H
 #define RT_BASE_TRANSFORM_H
 
@@ -40,14 +39,17 @@ RtStatus rt_transform_translate(RtTransform *transform, RtVec3 by, RtError *erro
 RtVec3d rt_transform_pointd(const RtTransform *transform, RtVec3d point);
 RtVec3 rt_transform_point(const RtTransform *transform, RtVec3 point);
 
-/* *inverse undoes *transform, up to rounding. Rejects what would leave too few digits: a determinant not
- * above 0 (mirrors are not supported), and lengths that grow by factors more than RT_MAX_STRETCH apart in
- * different directions, or by more than that in any. */
+/* *inverse undoes *transform, up to rounding. Rejects what would leave too few digits: a determinant of 0,
+ * and lengths that grow by factors more than RT_MAX_STRETCH apart in different directions, or by more than
+ * that in any. */
 #define RT_MAX_STRETCH 1e6
 RtStatus rt_transform_invert(const RtTransform *transform, RtTransform *inverse, RtError *error);
 
-/* Transforms a normal by the cofactor matrix; rt_transform_normald does not normalise. A zero vector stays
- * zero. */
+/* True of a mirror: a polygon whose vertices it moves shows its other side. */
+bool rt_transform_mirrors(const RtTransform *transform);
+
+/* Transforms a normal by the cofactor matrix, of which a mirror changes the sign, so that the outside stays
+ * out; rt_transform_normald does not normalise. A zero vector stays zero. */
 RtVec3d rt_transform_normald(const RtTransform *transform, RtVec3d normal);
 RtVec3 rt_transform_normal(const RtTransform *transform, RtVec3 normal);
 

@@ -95,10 +95,6 @@ RtStatus rt_mesh_begin_text(RtMeshReader *r);
 #define rt_mesh_warn(r, ...)                                                                                 \
     rt_warn_at(&(r)->scene->warnings, (r)->text.path, (r)->text.last, (r)->text.error, __VA_ARGS__)
 
-/* True if the transform turns the surface inside out: then the order of vertices is reversed and normals,
- * which transform by cofactors, change sign. */
-bool rt_mesh_is_mirror(const RtTransform *transform);
-
 /* Adds the vertex at `place`, transformed. Warns of one that is not finite, which no face may use. */
 RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3d place);
 /* Accepts any numbers: a normal that is not finite, with a warning, or has no length is ignored where it is

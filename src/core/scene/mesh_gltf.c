@@ -2,8 +2,8 @@
 /* glTF 2.0, as JSON (.gltf) or binary (.glb): the triangles of all nodes of the scene, nodes depth first,
  * each with its matrices, at rest: morph targets with the weights of the file, skins in the pose of their
  * joints. A mesh of PART_TRIANGLES or more that is placed several times, by nodes or by
- * EXT_mesh_gpu_instancing, becomes a part and instances of it, where it needs no skin and no mirror, is not
- * far from its own origin, and the file is the whole scene; else copies. Materials are ignored, animations
+ * EXT_mesh_gpu_instancing, becomes a part and instances of it, where it needs no skin, is not far from its
+ * own origin, and the file is the whole scene; else copies. Materials are ignored, animations
  * with a warning. Files that need another extension for their geometry are rejected.
  *
  * First all nodes are placed, because a skin needs the places of its joints; then come their meshes. */
@@ -98,7 +98,7 @@ static RtStatus apply_skin(RtGltf *g, const RtGltfItem *attributes, const Pose *
     const size_t count = positions->count;
     RtTransform *blended = rt_arena_alloc(&memory, count, sizeof *blended);
     double *sums = rt_arena_alloc(&memory, count, sizeof *sums);
-    const double sign = rt_mesh_is_mirror(&pose->transform) ? -1 : 1;
+    const double sign = rt_transform_mirrors(&pose->transform) ? -1 : 1;
     char joints_key[24] = "JOINTS_0", weights_key[24] = "WEIGHTS_0";
     RT_TRY(rt_arena_check(&memory, "a skin of glTF", g->mesh->text.error));
     for (int set = 1; json_object_get(attributes->object, joints_key); set++) {

@@ -32,8 +32,7 @@ RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3d place) {
 
 RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal) {
     if (!rt_finite(normal)) RT_TRY(rt_mesh_warn(r, "a normal is not finite: its triangles go without"));
-    normal =
-        rt_transform_normal(&r->transform, rt_mesh_is_mirror(&r->transform) ? rt_scale(normal, -1) : normal);
+    normal = rt_transform_normal(&r->transform, normal);
     return rt_append(&r->normals, &r->normal_count, &r->normal_capacity, &normal, sizeof normal,
                      r->text.error);
 }
@@ -66,15 +65,9 @@ RtStatus rt_mesh_add_index(RtMeshReader *r, double index) {
 
 /* ---- polygons ---- */
 
-bool rt_mesh_is_mirror(const RtTransform *transform) {
-    RtVec3d x = rt_transform_column(transform, 0), y = rt_transform_column(transform, 1),
-            z = rt_transform_column(transform, 2);
-    return rt_dotd(rt_crossd(x, y), z) < 0;
-}
-
 static RtStatus add_triangle(RtMeshReader *r, const RtMeshCorner corners[3]) {
     RtVec3 vertices[3], normals[3];
-    const bool mirror = rt_mesh_is_mirror(&r->transform);
+    const bool mirror = rt_transform_mirrors(&r->transform);
     bool has_normals = true;
     RtUv uv[3];
     for (int i = 0; i < 3; i++) {

@@ -311,9 +311,10 @@ typedef struct Append {
     const RtScene *from;
     const RtTransform *transform; /* or NULL */
     double scale;                 /* the uniform scale, 0 if uneven */
+    bool mirror;                  /* reverse the order of vertices */
     uint32_t painted;             /* index in `to` of the material of all objects, or RT_OWN_MATERIALS */
     uint32_t *materials;          /* [of->material_count] index in `to` */
-    RtVec3 *vertices;             /* [from->geometry.polygon_vertex_count] moved */
+    RtVec3 *vertices;             /* [from->geometry.polygon_vertex_count] of a polygon that is moved */
     bool textures;                /* keep them */
     RtError *error;
 } Append;
@@ -345,17 +346,28 @@ static RtStatus append_cone(const Append *a, uint32_t material, const RtCone *co
 static RtStatus append_triangle(const Append *a, uint32_t material, uint32_t index) {
     const RtGeometry *g = &a->from->geometry;
     uint32_t entry = g->triangle_normals ? g->triangle_normals[index] : RT_NO_NORMALS;
+    const RtTriangleTexture *texture = rt_scene_triangle_texture(a->from, index);
     RtVec3 vertices[3], normals[3];
+    RtUv uv[3];
     for (int i = 0; i < 3; i++) {
-        vertices[i] = move_point(a, g->triangles[index].v[i]);
+        const int k = a->mirror ? 2 - i : i;
+        vertices[k] = move_point(a, g->triangles[index].v[i]);
+        if (texture) uv[k] = texture->at[i];
         if (entry == RT_NO_NORMALS) continue;
         RtVec3 n = g->vertex_normals[entry].n[i];
-        normals[i] = a->transform ? rt_transform_normal(a->transform, n) : n;
+        normals[k] = a->transform ? rt_transform_normal(a->transform, n) : n;
     }
     RT_TRY(
         rt_scene_add_triangle(a->to, material, vertices, entry == RT_NO_NORMALS ? NULL : normals, a->error));
-    const RtTriangleTexture *texture = rt_scene_triangle_texture(a->from, index);
-    return texture ? rt_scene_set_triangle_texture(a->to, texture->at, a->error) : RT_OK;
+    return texture ? rt_scene_set_triangle_texture(a->to, uv, a->error) : RT_OK;
+}
+
+static RtStatus append_polygon(const Append *a, uint32_t material, const RtPolygon *polygon) {
+    const uint32_t last = polygon->count - 1;
+    for (uint32_t i = 0; i <= last; i++)
+        a->vertices[a->mirror ? last - i : i] =
+            move_point(a, a->from->geometry.polygon_vertices[polygon->first + i]);
+    return rt_scene_add_polygon(a->to, material, a->vertices, polygon->count, a->error);
 }
 
 static RtStatus append_objects(Append a, const uint32_t *ids, uint32_t count);
@@ -363,6 +375,7 @@ static RtStatus append_objects(Append a, const uint32_t *ids, uint32_t count);
 static RtStatus append_csg(const Append *a, const RtCsg *tree) {
     RtCsgBuilder builder = {0};
     RtCsgTerm root = 0;
+    if (a->mirror) return rt_fail(a->error, RT_BAD_INPUT, "a CSG tree has no mirrored copies");
     RtStatus status = rt_csg_recover(&builder, &a->from->geometry.forest, tree, &root, a->error);
     for (uint32_t i = 0; i < builder.set.solid_count && status == RT_OK; i++) {
         const uint32_t own = a->materials[builder.set.solids[i].material];
@@ -392,9 +405,7 @@ static RtStatus append_object(const Append *a, uint32_t id) {
     const uint32_t material = paints ? a->materials[own] : a->painted;
     switch (rt_ref_shape(g->objects[id])) {
     case RT_SHAPE_SPHERE: return append_sphere(a, material, &g->spheres[index]);
-    case RT_SHAPE_POLYGON:
-        return rt_scene_add_polygon(a->to, material, a->vertices + g->polygons[index].first,
-                                    g->polygons[index].count, a->error);
+    case RT_SHAPE_POLYGON: return append_polygon(a, material, &g->polygons[index]);
     case RT_SHAPE_TRIANGLE: return append_triangle(a, material, index);
     case RT_SHAPE_CONE: return append_cone(a, material, &g->cones[index]);
     case RT_SHAPE_CSG: return append_csg(a, &g->csgs[index]);
@@ -418,10 +429,9 @@ static RtStatus append_objects(Append a, const uint32_t *ids, uint32_t count) {
     RT_ARENA(memory);
     const RtGeometry *g = &a.from->geometry;
     a.scale = a.transform ? rt_transform_uniform_scale(a.transform) : 1;
+    a.mirror = a.transform && rt_transform_mirrors(a.transform);
     a.vertices = rt_arena_alloc(&memory, g->polygon_vertex_count, sizeof(RtVec3));
     RT_TRY(rt_arena_check(&memory, "appending a scene", a.error));
-    for (uint32_t i = 0; i < g->polygon_vertex_count; i++)
-        a.vertices[i] = move_point(&a, g->polygon_vertices[i]);
     for (uint32_t i = 0; i < count; i++) RT_TRY(append_object(&a, ids ? ids[i] : i));
     return RT_OK;
 }
