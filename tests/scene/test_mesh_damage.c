@@ -365,8 +365,8 @@ RT_TEST(deeply_nested_gltf_is_refused) {
     assert_bad_input(load_bytes("gltf", text, sizeof text, &scene, error), "maximum parsing depth reached");
 }
 
-/* Each of `nodes` places `nodes` primitives, of a triangle each, that share as many vertices; squeezed flat, so
- * that they become no instances. */
+/* Each of `nodes` places `nodes` primitives, of a triangle each, that share as many vertices; squeezed flat,
+ * so that they become no instances. */
 static RtStatus load_repeated(int nodes, RtScene *scene, RtError *problem) {
     static char text[100000];
     size_t size = (size_t)sprintf(text, "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[");
