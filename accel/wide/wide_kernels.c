@@ -303,11 +303,14 @@ typedef struct Waiting {
     uint32_t object[RT_WIDE_MAX_STATES], part[RT_WIDE_MAX_STATES]; /* that instance, and its part */
 } Waiting;
 
+enum { PART_BINS = 64 };
+
 /* Tests object `slot` of the leaf at which each ray waits. */
 RT_KERNEL void test_slot(const Query *q, Waiting *w, uint32_t slot, bool any, bool counted) {
     const RtGeometry *g = q->geometry;
     const RtQuery *parts = q->scratch->hit_memory->parts;
-    uint32_t rays[RT_WIDE_MAX_STATES], asked[RT_WIDE_MAX_STATES], occluders[RT_WIDE_MAX_STATES], left = 0;
+    uint32_t rays[RT_WIDE_MAX_STATES], sorted[RT_WIDE_MAX_STATES], occluders[RT_WIDE_MAX_STATES], count = 0;
+    uint32_t ends[PART_BINS + 1] = {0};
     RtRay inside[RT_WIDE_MAX_STATES];
     RtHit hits[RT_WIDE_MAX_STATES];
     for (uint32_t i = 0; i < w->count; i++) {
@@ -322,27 +325,26 @@ RT_KERNEL void test_slot(const Query *q, Waiting *w, uint32_t slot, bool any, bo
                                   span_ray(&ray, &q->rays[f->index], rt_loadu4(f->inv), f->tmin, f->tmax),
                                   &f->best, &w->entry[i], &w->inside[i], tally)) {
             w->part[i] = rt_instance_of(g, id)->part;
-            rays[left++] = i;
+            rays[count++] = i;
         }
     }
-    while (left > 0) { /* one part after the other */
-        const uint32_t part = w->part[rays[0]], waiting = left;
-        uint32_t count = 0;
-        left = 0;
-        for (uint32_t i = 0; i < waiting; i++) {
-            if (w->part[rays[i]] == part)
-                inside[count] = w->inside[rays[i]], asked[count++] = rays[i];
-            else
-                rays[left++] = rays[i];
-        }
-        rt_trace_stream(parts[part].accel, parts[part].scratch, inside, count, any ? NULL : hits,
-                        any ? occluders : NULL, counted ? q->tallies : NULL);
-        for (uint32_t i = 0; i < count; i++) {
-            const uint32_t k = asked[i];
-            w->over[k] = rt_enter_end(rt_instance_of(g, w->object[k]), &w->entry[k],
-                                      any ? (RtHit){0, occluders[i]} : hits[i], any, &w->ray[k]->best,
-                                      counted ? w->ray[k]->tally : NULL);
-        }
+    /* Sorted by the last bits of their parts, so that those of a part are together, or nearly all. */
+    for (uint32_t i = 0; i < count; i++) ends[1 + w->part[rays[i]] % PART_BINS]++;
+    for (uint32_t i = 1; i < PART_BINS; i++) ends[i] += ends[i - 1];
+    for (uint32_t i = 0; i < count; i++) sorted[ends[w->part[rays[i]] % PART_BINS]++] = rays[i];
+    for (uint32_t first = 0, end; first < count; first = end) {
+        const uint32_t part = w->part[sorted[first]];
+        for (end = first; end < count && w->part[sorted[end]] == part; end++)
+            inside[end] = w->inside[sorted[end]];
+        rt_trace_stream(parts[part].accel, parts[part].scratch, inside + first, end - first,
+                        any ? NULL : hits + first, any ? occluders + first : NULL,
+                        counted ? q->tallies : NULL);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t k = sorted[i];
+        w->over[k] = rt_enter_end(rt_instance_of(g, w->object[k]), &w->entry[k],
+                                  any ? (RtHit){0, occluders[i]} : hits[i], any, &w->ray[k]->best,
+                                  counted ? w->ray[k]->tally : NULL);
     }
 }
 
