@@ -351,7 +351,7 @@ static RtTransform in_a_row(uint32_t i) {
     return t;
 }
 
-/* Every third is painted. Places beyond the largest coordinate are refused. */
+/* Every third is painted; around the origin all mirror. Places beyond the largest coordinate are refused. */
 static void add_instance(Family *f, RtScene *to, const RtScene *of, uint32_t i) {
     RtStatus status = f->b->status == RT_OK ? RT_BAD_INPUT : f->b->status;
     const Place place = f->recipe->place;

@@ -38,7 +38,7 @@ if "$program" accels embree >/dev/null 2>&1; then
         settings+=" $setting"
     done
     # shellcheck disable=SC2046 # one word each
-    listed "$settings" 5000 $("$program" verify --accel brute --rays 1 --json | sed -n 's/^ *"scene": "\(.*\)",/\1/p' | grep -vF "$slow")
+    listed "$settings" 5000 $(verified_scenes | grep -vF "$slow")
     listed "$settings" 250 "$slow"
 else
     echo "check_verdicts: built without Embree: its faults are not looked for" >&2

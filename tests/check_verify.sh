@@ -4,10 +4,9 @@
 # five times as long, more than five million in all, without a wrong answer; wrong ones are left in verify-failures/ to be replayed.
 # Takes three minutes on two cores: once, with the release build, is enough. Uses $RT_PROGRAM.
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 cd "$(dirname "$0")/.."
-program=${RT_PROGRAM:-build/release/raytally}
-rays=${1:-156000} all=0
-table=$(mktemp) && trap 'rm -f "$table"' EXIT
+rays=${1:-156000} all=0 table=$work/table
 
 # verify_families RAYS SCENE...: adds to the sum
 verify_families() {
@@ -25,7 +24,7 @@ verify_families() {
     all=$((all + hard))
 }
 
-families=$("$program" verify families --accel brute --rays 1 --json | sed -n 's/^ *"scene": "\(.*\)",/\1/p')
+families=$(verified_scenes families)
 slow='kind=instanced|kind=concentric'
 # shellcheck disable=SC2046 # one word each
 verify_families "$rays" $(grep -vE "$slow" <<<"$families")

@@ -42,6 +42,11 @@ says_not() {
     [[ ! $(cat printed said | tr '\n' ' ') =~ $1 ]] || complain "raytally $last: says '$1': $(tail -n 50 said printed)"
 }
 
+# verified_scenes [families]: those that `verify` takes by default, or its families, a line each
+verified_scenes() {
+    "$program" verify "$@" --accel brute --rays 1 --json | sed -n 's/^ *"scene": "\(.*\)",/\1/p'
+}
+
 # check_links DOCUMENT: the files that it links to exist
 check_links() {
     local link

@@ -297,10 +297,11 @@ RT_KERNEL void start_next_ray(const Query *q, RayQueues *t, RayState *f, bool an
 typedef struct Waiting {
     uint32_t count;
     RayState *ray[RT_WIDE_MAX_STATES];
-    bool over[RT_WIDE_MAX_STATES];                                 /* the search is */
-    RtEntry entry[RT_WIDE_MAX_STATES];                             /* into an instance */
-    RtRay inside[RT_WIDE_MAX_STATES];                              /* moved into its part */
-    uint32_t object[RT_WIDE_MAX_STATES], part[RT_WIDE_MAX_STATES]; /* that instance, and its part */
+    bool over[RT_WIDE_MAX_STATES];       /* the search is */
+    RtEntry entry[RT_WIDE_MAX_STATES];   /* into an instance */
+    RtRay inside[RT_WIDE_MAX_STATES];    /* moved into its part */
+    uint32_t object[RT_WIDE_MAX_STATES]; /* that instance */
+    uint32_t part[RT_WIDE_MAX_STATES];   /* its part */
 } Waiting;
 
 enum { PART_BINS = 64 };

@@ -124,13 +124,10 @@ static void print_test(const RtPath *path, const RtPathRow *row) {
         print_projection(&place->ray, &g->polygons[index], rt_polygon_vertices(g, index));
 }
 
-/* Columns of the first word of a row, which is indented by the instances around it. */
-#define WORD_WIDTH(path) (14 + 2 * (int)(path)->places[0].scene->geometry.nesting)
-
-static void print_row(const RtPath *path, uint32_t index) {
+static void print_row(const RtPath *path, uint32_t index, int width) {
     const RtPathRow *row = &path->rows[index];
     const RtPathPlace *place = &path->places[row->place];
-    const int width = WORD_WIDTH(path), indent = 2 * (int)row->level;
+    const int indent = 2 * (int)row->level;
     char of[RT_MAX_NAME + 32] = "";
     if (row->kind == RT_TRACED_OBJECT_TEST && !row->instance)
         snprintf(of, sizeof of, "%s %u, %s", row->what, rt_path_row_index(path, row),
@@ -159,7 +156,8 @@ static void print_row(const RtPath *path, uint32_t index) {
 
 static void print_rows(const RtPath *path, const Options *o) {
     uint32_t left_out = 0, joined = 0;
-    const int width = WORD_WIDTH(path);
+    /* Columns of the first word of a row, which is indented by the instances around it. */
+    const int width = 14 + 2 * (int)path->places[0].scene->geometry.nesting;
     printf("\n%5s  %*s  %-24s  %-20s  %-18s  %9s\n", "", width, "", "", " in box or solid, t", "",
            "nearest t");
     for (uint32_t i = 0, run; i < path->count; i += run) {
@@ -170,7 +168,7 @@ static void print_rows(const RtPath *path, const Options *o) {
         if (o->rows > 0 && (int64_t)i >= o->rows && !hits) {
             left_out += run;
         } else if (run == 1) {
-            print_row(path, i);
+            print_row(path, i, width);
         } else {
             const int indent = 2 * (int)row->level;
             printf("%5u  %*s%-*s  %u objects, to row %-41u  %-18s", i + 1, indent, "", width - indent,

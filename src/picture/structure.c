@@ -14,7 +14,8 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LEAST_WIDTH = 300, LINES = 3, MOST_IN_PARTS = 200000 }; /* of the legend; boxes in instances */
+enum { LEAST_WIDTH = 300, LINES = 3 }; /* of the legend */
+enum { MOST_IN_PARTS = 200000 };       /* boxes in instances */
 
 static const RtColor object_color = {{130, 130, 130}};
 

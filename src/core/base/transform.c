@@ -122,8 +122,9 @@ RtVec3d rt_transform_normald(const RtTransform *transform, RtVec3d normal) {
             z = rt_transform_column(transform, 2);
     RtVec3d sum = rt_scaled(rt_crossd(y, z), normal.x);
     sum = rt_add_scaledd(sum, rt_crossd(z, x), normal.y);
-    sum = rt_add_scaledd(sum, rt_crossd(x, y), normal.z);
-    return rt_transform_mirrors(transform) ? rt_scaled(sum, -1) : sum;
+    const RtVec3d xy = rt_crossd(x, y);
+    sum = rt_add_scaledd(sum, xy, normal.z);
+    return rt_dotd(xy, z) < 0 ? rt_scaled(sum, -1) : sum; /* rt_transform_mirrors */
 }
 
 RtVec3 rt_transform_normal(const RtTransform *transform, RtVec3 normal) {
