@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Entering instances (core/shape/instance.h), in two halves: between them the part is asked for the hit of
- * the moved ray, which is alone (instance.c) or one of a stream (wide, item).
+ * the moved ray, which is alone (instance.c) or one of a stream (packets of wide, item).
  *
  * The part is asked for hits up to the best one, but not where the interval of the instance's thick box ends
  * before it: a hit beyond would be clamped to that end, and so be nearer. */
@@ -14,16 +14,23 @@ typedef struct RtEntry {
     float near, far;
 } RtEntry;
 
-/* Moves the ray into the part, *inside. False if it misses the instance, or can find nothing better there. */
+/* Moves a ray that meets the instance's box into the part, *inside. False if it is no ray there. */
+RT_KERNEL bool rt_enter_move(const RtInstance *instance, const RtRay *ray, const RtHit *best,
+                             const RtEntry *entry, RtRay *inside) {
+    if (!rt_instance_enter(instance, ray, inside)) return false;
+    if (best->t < entry->far) inside->tmax = rt_minf(inside->tmax, best->t);
+    return true;
+}
+
+/* The same for any ray. False if it misses the instance, or can find nothing better there. */
 RT_KERNEL bool rt_enter_begin(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray,
                               const RtHit *best, RtEntry *entry, RtRay *inside, RtTally *tally) {
     rt_count_test(geometry, id, tally);
     rt_box_own_span(&geometry->boxes[id], ray, &entry->near, &entry->far);
     if (!(entry->near <= entry->far && entry->near <= rt_limit(ray, best) && entry->far >= ray->tmin))
         return false;
-    const RtInstance *instance = rt_instance_of(geometry, id);
-    if (!rt_instance_enter(instance, (const RtRay *)ray->ray, inside)) return false;
-    if (best->t < entry->far) inside->tmax = rt_minf(inside->tmax, best->t);
+    if (!rt_enter_move(rt_instance_of(geometry, id), (const RtRay *)ray->ray, best, entry, inside))
+        return false;
     RT_COUNT(tally, instances_entered, 1);
     RT_OBSERVE(tally, .kind = RT_TRACED_ENTERED, .index = id);
     return true;

@@ -106,25 +106,36 @@ typedef struct RtLaneRays {
     RtInts negative[3];                  /* -1 where dir has its sign bit set, else 0 */
 } RtLaneRays;
 
-/* The hits that stay; *t is brought into the box. */
-RT_KERNEL uint32_t rt_admit(const RtLaneRays *ray, RtFloats v[3][3], uint32_t hit, RtFloats *t) {
-    RtFloats lo[3], hi[3], farthest = rt_all(0);
+/* rt_box_own_span: where each ray is in the thick box lo..hi. */
+RT_KERNEL void rt_own_span(const RtLaneRays *ray, const RtFloats lo[3], const RtFloats hi[3], RtFloats *near,
+                           RtFloats *far) {
+    RtFloats farthest = rt_all(0);
     for (int a = 0; a < 3; a++) {
-        lo[a] = rt_min(rt_min(v[0][a], v[1][a]), v[2][a]);
-        hi[a] = rt_max(rt_max(v[0][a], v[1][a]), v[2][a]);
         farthest = rt_max(rt_abs(lo[a] - ray->org[a]), farthest);
         farthest = rt_max(rt_abs(hi[a] - ray->org[a]), farthest);
     }
-    RtFloats thickness = farthest * 0x1p-20f, near = rt_all(-INFINITY), far = rt_all(INFINITY);
+    const RtFloats thickness = farthest * 0x1p-20f;
+    *near = rt_all(-INFINITY);
+    *far = rt_all(INFINITY);
     for (int a = 0; a < 3; a++) {
         RtFloats org = ray->org[a], shift = rt_lanes_shift(thickness, org);
         RtFloats above = org + shift, below = org - shift;
         RtInts down = ray->negative[a];
         RtFloats first = rt_select(down, hi[a], lo[a]) - rt_select(down, below, above);
         RtFloats second = rt_select(down, lo[a], hi[a]) - rt_select(down, above, below);
-        near = rt_max(first * ray->inv[a], near);
-        far = rt_min(second * ray->inv[a], far);
+        *near = rt_max(first * ray->inv[a], *near);
+        *far = rt_min(second * ray->inv[a], *far);
     }
+}
+
+/* The hits that stay; *t is brought into the box. */
+RT_KERNEL uint32_t rt_admit(const RtLaneRays *ray, RtFloats v[3][3], uint32_t hit, RtFloats *t) {
+    RtFloats lo[3], hi[3], near, far;
+    for (int a = 0; a < 3; a++) {
+        lo[a] = rt_min(rt_min(v[0][a], v[1][a]), v[2][a]);
+        hi[a] = rt_max(rt_max(v[0][a], v[1][a]), v[2][a]);
+    }
+    rt_own_span(ray, lo, hi, &near, &far);
     *t = rt_min(far, rt_max(near, *t)); /* NaN stays, and is no hit */
     return hit & rt_le_bits(near, far) & rt_le_bits(ray->tmin, *t) & rt_le_bits(*t, ray->tmax);
 }

@@ -174,23 +174,47 @@ RT_KERNEL void test_pairs(Packet *p, const RtWideTree *tree, uint32_t least, boo
 
 /* ---- leaves ---- */
 
+/* Those of the rays that may find something better in the box of an instance, and where they are in it. */
+RT_KERNEL uint64_t rays_in_box(const Packet *p, const RtBox *box, uint64_t rays, float near[PACKET],
+                               float far[PACKET]) {
+    RtFloats lo[3], hi[3], from, to;
+    for (int a = 0; a < 3; a++) {
+        lo[a] = rt_all(box->lo.at[a]);
+        hi[a] = rt_all(box->hi.at[a]);
+    }
+    uint64_t met = 0;
+    for (uint32_t i = 0; i < PACKET; i += RT_LANES) {
+        if ((rays >> i & ((1u << RT_LANES) - 1)) == 0) continue;
+        RtLaneRays lanes;
+        for (int a = 0; a < 3; a++) {
+            lanes.org[a] = rt_load(&p->org[a][i]);
+            lanes.inv[a] = rt_load(&p->inv[a][i]);
+            lanes.negative[a] = rt_all_ints(-p->negative[a]);
+        }
+        rt_own_span(&lanes, lo, hi, &from, &to);
+        rt_store(&near[i], from);
+        rt_store(&far[i], to);
+        met |= (uint64_t)(rt_le_bits(from, to) & rt_le_bits(from, rt_load(&p->limit[i])) &
+                          rt_le_bits(rt_load(&p->tmin[i]), to))
+               << i;
+    }
+    return met & rays;
+}
+
 /* Moves rays into an instance, and asks its part for their hits, as one stream. */
 static __attribute__((noinline)) void visit_instance(Packet *p, const Query *q, uint32_t id, uint64_t rays,
                                                      bool any) {
     const RtInstance *instance = rt_instance_of(q->geometry, id);
     const RtQuery *part = &q->scratch->hit_memory->parts[instance->part];
+    _Alignas(RT_CACHE_LINE) float near[PACKET], far[PACKET];
     RtEntry entry[PACKET];
     RtRay inside[PACKET];
     RtHit hits[PACKET];
     uint32_t number[PACKET], occluders[PACKET], count = 0;
-    for (; rays; rays &= rays - 1) {
-        const uint32_t i = first_ray(rays);
-        const RtFloat4 inv = {p->inv[0][i], p->inv[1][i], p->inv[2][i]};
-        RtPreparedRay ray;
-        span_ray(&ray, &q->rays[p->index[i]], inv, p->tmin[i], p->tmax[i]);
-        if (!rt_enter_begin(q->geometry, id, &ray, &p->best[i], &entry[count], &inside[count], NULL))
-            continue;
-        number[count++] = i;
+    for (rays = rays_in_box(p, &q->geometry->boxes[id], rays, near, far); rays; rays &= rays - 1) {
+        const uint32_t i = number[count] = first_ray(rays);
+        entry[count] = (RtEntry){near[i], far[i]};
+        count += rt_enter_move(instance, &q->rays[p->index[i]], &p->best[i], &entry[count], &inside[count]);
     }
     if (count == 0) return;
     rt_trace_stream(part->accel, part->scratch, inside, count, any ? NULL : hits, any ? occluders : NULL,

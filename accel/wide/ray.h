@@ -499,18 +499,6 @@ RT_KERNEL void count_leaf(RtTally *tally, const RtWideTree *tree, const RtGeomet
     if (RT_OBSERVED(tally)) observe_leaf(tree, g, ref);
 }
 
-/* Prepares a ray for rt_enter_begin alone: whole vectors, whose last lanes have no meaning. */
-RT_KERNEL const RtPreparedRay *span_ray(RtPreparedRay *out, const RtRay *ray, RtFloat4 inv, float tmin,
-                                        float tmax) {
-    out->tmin = tmin;
-    out->tmax = tmax;
-    out->ray = (const raytally_ray *)ray;
-    rt_store(out->org, rt_loadu4(ray));
-    rt_store(out->dir, rt_loadu4((const char *)ray + offsetof(RtRay, dir)));
-    rt_store(out->inv, inv);
-    return out;
-}
-
 /* After a leaf: drops the stack entries that are entered beyond the best hit, so entries need no test when
  * they are popped. */
 RT_KERNEL void cull_stack(RayState *f) {

@@ -112,18 +112,17 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtValue *values = what->values;
     const RtTreeMethod method = (RtTreeMethod)values[PARAM_BUILD].choice;
     const bool two = method == RT_TREE_SPATIAL && values[PARAM_WHOLE].flag;
-    const bool instances = what->scene->geometry.instance_count > 0;
     RtWide *self = (RtWide *)accel;
     self->occluded = &self->trees[two ? 1 : 0];
     rt_isa_use(accel, RT_KERNELS_FOR(wide, rt_isa_asked(values[PARAM_ISA])));
     self->in_flight = (uint32_t)values[PARAM_IN_FLIGHT].i;
-    if (self->in_flight > 1 && instances) self->in_flight *= RT_WIDE_GATHER;
-    if (self->in_flight > RT_WIDE_MAX_STATES) self->in_flight = RT_WIDE_MAX_STATES;
     accel->scratch_bytes += (size_t)self->in_flight * RT_WIDE_STATE_BYTES;
     self->order = values[PARAM_ORDER].flag;
     self->prefetch = values[PARAM_PREFETCH].flag;
     self->fused = may_fuse(&what->scene->geometry);
     self->sharing = (float)values[PARAM_SHARING].f;
+    /* Over instances packets pay earlier: they hand streams to the parts, rays in flight one ray each. */
+    if (what->scene->geometry.instance_count > 0) self->sharing /= 2;
     self->packets = (uint32_t)values[PARAM_PACKETS].i;
     RT_TRY(fill(self, 0, what, method, error));
     return two ? fill(self, 1, what, RT_TREE_BINNED, error) : RT_OK;

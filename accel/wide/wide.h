@@ -22,9 +22,7 @@ enum {
     RT_WIDE = 8,                /* children of a node at most */
     RT_WIDE_BLOCK = 4,          /* triangles of a block at most */
     RT_WIDE_MAX_LEAF = 8,       /* objects of a leaf at most */
-    RT_WIDE_MAX_IN_FLIGHT = 64, /* rays that are traced at once at most, */
-    RT_WIDE_GATHER = 8,         /* times as many in a geometry with instances, but */
-    RT_WIDE_MAX_STATES = 256,   /* at most so many */
+    RT_WIDE_MAX_IN_FLIGHT = 64, /* rays that are traced at once at most */
     RT_WIDE_STATE_BYTES = 4160, /* of the state of one (ray.h) */
     RT_WIDE_MAX_PACKETS = 16    /* packets that are traced at once at most */
 };

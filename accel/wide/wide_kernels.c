@@ -11,8 +11,9 @@
  *
  * Rays are traced in packets while the rays of a packet share enough of their visits, else one by one in
  * streams. The sharing is estimated from the packets traced last, and packets are tried again from time to
- * time. Counted kernels trace no packets, because a count belongs to one ray, and no ray alone, whose stack
- * has another order: they always have rays in flight. */
+ * time. Few rays, as those of a packet that enter an instance may be, are traced one after the other. Counted
+ * kernels trace no packets, because a count belongs to one ray, and no ray alone, whose stack has another
+ * order: they always have rays in flight. */
 #include "accel/wide/packet.h"
 
 /* Writes the answer of a ray. */
@@ -169,7 +170,7 @@ RT_KERNEL void trace_one_by_one(const Query *q, size_t count, bool any) {
 typedef struct RayQueues {
     uint32_t in_flight;
     uint32_t count[4]; /* rays in the queue of each RtWideKind */
-    RayState *list[4][RT_WIDE_MAX_STATES];
+    RayState *list[4][RT_WIDE_MAX_IN_FLIGHT];
 } RayQueues;
 
 /* Enqueues a ray if `one` is 1; if it is 0, the next entry overwrites it. */
@@ -190,8 +191,8 @@ RT_KERNEL uint32_t take_queue(RayQueues *t, RtWideKind kind) {
 }
 
 RT_KERNEL void visit_nodes(const Query *q, RayQueues *t, bool any, bool counted, bool ahead) {
-    _Alignas(RT_CACHE_LINE) float enters[RT_WIDE_MAX_STATES][RT_WIDE];
-    uint32_t masks[RT_WIDE_MAX_STATES], n = take_queue(t, RT_WIDE_NODE);
+    _Alignas(RT_CACHE_LINE) float enters[RT_WIDE_MAX_IN_FLIGHT][RT_WIDE];
+    uint32_t masks[RT_WIDE_MAX_IN_FLIGHT], n = take_queue(t, RT_WIDE_NODE);
     const bool ordered = !any && q->self->order;
     const RtWideTree tree = *q->tree;
     for (uint32_t i = 0; i < n; i++) {
@@ -223,7 +224,7 @@ typedef struct Candidates {
  * their next queue. */
 RT_KERNEL uint32_t prefilter_leaves(const Query *q, RayQueues *t, Candidates *found, bool counted,
                                     bool ahead) {
-    uint32_t masks[RT_WIDE_MAX_STATES], n = take_queue(t, RT_WIDE_TRIANGLES), count = 0;
+    uint32_t masks[RT_WIDE_MAX_IN_FLIGHT], n = take_queue(t, RT_WIDE_TRIANGLES), count = 0;
     const RtWideTree tree = *q->tree;
     for (uint32_t i = 0; i < n; i++) {
         RayState *f = t->list[RT_WIDE_TRIANGLES][i];
@@ -253,9 +254,9 @@ RT_KERNEL void finish_leaf(const Query *q, RayQueues *t, RayState *f, bool over,
 
 /* Tests all queued leaves of spheres. */
 RT_KERNEL void visit_spheres(const Query *q, RayQueues *t, bool any, bool counted, bool ahead) {
-    SpherePair pairs[RT_WIDE_MAX_STATES * RT_WIDE_MAX_LEAF];
-    float at[RT_WIDE_MAX_STATES * RT_WIDE_MAX_LEAF];
-    uint32_t n = take_queue(t, RT_WIDE_SPHERES), count = 0, first = 0, ends[RT_WIDE_MAX_STATES];
+    SpherePair pairs[RT_WIDE_MAX_IN_FLIGHT * RT_WIDE_MAX_LEAF];
+    float at[RT_WIDE_MAX_IN_FLIGHT * RT_WIDE_MAX_LEAF];
+    uint32_t n = take_queue(t, RT_WIDE_SPHERES), count = 0, first = 0, ends[RT_WIDE_MAX_IN_FLIGHT];
     for (uint32_t i = 0; i < n; i++) {
         const RayState *f = t->list[RT_WIDE_SPHERES][i];
         ends[i] = count + list_count(q, f->next);
@@ -289,93 +290,9 @@ RT_KERNEL void start_next_ray(const Query *q, RayQueues *t, RayState *f, bool an
     }
 }
 
-/* ---- instances ----
- *
- * Rays that wait at leaves with instances are moved into the parts, and each part is asked for the hits of a
- * whole stream, of rays from all its instances. */
-
-typedef struct Waiting {
-    uint32_t count;
-    RayState *ray[RT_WIDE_MAX_STATES];
-    bool over[RT_WIDE_MAX_STATES];       /* the search is */
-    RtEntry entry[RT_WIDE_MAX_STATES];   /* into an instance */
-    RtRay inside[RT_WIDE_MAX_STATES];    /* moved into its part */
-    uint32_t object[RT_WIDE_MAX_STATES]; /* that instance */
-    uint32_t part[RT_WIDE_MAX_STATES];   /* its part */
-} Waiting;
-
-enum { PART_BINS = 64 };
-
-/* Tests object `slot` of the leaf at which each ray waits. */
-RT_KERNEL void test_slot(const Query *q, Waiting *w, uint32_t slot, bool any, bool counted) {
-    const RtGeometry *g = q->geometry;
-    const RtQuery *parts = q->scratch->hit_memory->parts;
-    uint32_t rays[RT_WIDE_MAX_STATES], sorted[RT_WIDE_MAX_STATES], occluders[RT_WIDE_MAX_STATES], count = 0;
-    uint32_t ends[PART_BINS + 1] = {0};
-    RtRay inside[RT_WIDE_MAX_STATES];
-    RtHit hits[RT_WIDE_MAX_STATES];
-    for (uint32_t i = 0; i < w->count; i++) {
-        RayState *f = w->ray[i];
-        RtTally *tally = counted ? f->tally : NULL;
-        RtPreparedRay ray;
-        if (w->over[i] || slot >= list_count(q, f->next)) continue;
-        const uint32_t id = w->object[i] = ((const RtWideList *)rt_wide_leaf_at(q->tree, f->next))->id[slot];
-        if (!rt_is_instance(g, id)) {
-            w->over[i] = test_object(g, id, state_ray(f, q), any, &f->best, tally);
-        } else if (rt_enter_begin(g, id,
-                                  span_ray(&ray, &q->rays[f->index], rt_loadu4(f->inv), f->tmin, f->tmax),
-                                  &f->best, &w->entry[i], &w->inside[i], tally)) {
-            w->part[i] = rt_instance_of(g, id)->part;
-            rays[count++] = i;
-        }
-    }
-    /* Sorted by the last bits of their parts, so that those of a part are together, or nearly all. */
-    for (uint32_t i = 0; i < count; i++) ends[1 + w->part[rays[i]] % PART_BINS]++;
-    for (uint32_t i = 1; i < PART_BINS; i++) ends[i] += ends[i - 1];
-    for (uint32_t i = 0; i < count; i++) sorted[ends[w->part[rays[i]] % PART_BINS]++] = rays[i];
-    for (uint32_t first = 0, end; first < count; first = end) {
-        const uint32_t part = w->part[sorted[first]];
-        for (end = first; end < count && w->part[sorted[end]] == part; end++)
-            inside[end] = w->inside[sorted[end]];
-        rt_trace_stream(parts[part].accel, parts[part].scratch, inside + first, end - first,
-                        any ? NULL : hits + first, any ? occluders + first : NULL,
-                        counted ? q->tallies : NULL);
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        const uint32_t k = sorted[i];
-        w->over[k] = rt_enter_end(rt_instance_of(g, w->object[k]), &w->entry[k],
-                                  any ? (RtHit){0, occluders[i]} : hits[i], any, &w->ray[k]->best,
-                                  counted ? w->ray[k]->tally : NULL);
-    }
-}
-
-/* Functions of their own, which are not inlined: the linker fails where an inlined one loads the address of
- * the thread's observer into a vector (gcc 12 with AVX-512). */
-static __attribute__((noinline)) void test_slot_timed(const Query *q, Waiting *w, uint32_t slot, bool any) {
-    test_slot(q, w, slot, any, false);
-}
-
-static __attribute__((noinline)) void test_slot_counted(const Query *q, Waiting *w, uint32_t slot, bool any) {
-    test_slot(q, w, slot, any, true);
-}
-
-RT_KERNEL void test_waiting(const Query *q, RayQueues *t, Waiting *w, bool any, bool counted, bool ahead) {
-    uint32_t most = 0;
-    for (uint32_t i = 0; i < w->count; i++) {
-        const uint32_t objects = list_count(q, w->ray[i]->next);
-        if (objects > most) most = objects;
-        w->over[i] = false;
-    }
-    for (uint32_t slot = 0; slot < most; slot++)
-        (counted ? test_slot_counted : test_slot_timed)(q, w, slot, any);
-    for (uint32_t i = 0; i < w->count; i++) finish_leaf(q, t, w->ray[i], w->over[i], any, ahead);
-}
-
 /* Tests the other leaves, and starts other rays in place of those that have finished. */
 RT_KERNEL void visit_others(const Query *q, RayQueues *t, bool any, bool counted, bool ahead) {
     uint32_t n = take_queue(t, RT_WIDE_OBJECTS);
-    Waiting waiting;
-    waiting.count = 0;
     for (uint32_t i = 0; i < n; i++) {
         RayState *f = t->list[RT_WIDE_OBJECTS][i];
         RtTally *tally = counted ? f->tally : NULL;
@@ -386,18 +303,16 @@ RT_KERNEL void visit_others(const Query *q, RayQueues *t, bool any, bool counted
             continue;
         }
         count_leaf(tally, q->tree, q->geometry, f->next);
-        if (q->geometry->instance_count > 0)
-            waiting.ray[waiting.count++] = f;
-        else
-            finish_leaf(q, t, f, test_objects(q, f->next, state_ray(f, q), any, &f->best, tally), any, ahead);
+        finish_leaf(q, t, f, test_objects(q, f->next, state_ray(f, q), any, &f->best, tally), any, ahead);
     }
-    if (waiting.count > 0) test_waiting(q, t, &waiting, any, counted, ahead);
 }
 
 RT_KERNEL void trace_many(const Query *q, bool any, bool counted) {
     const bool ahead = q->self->prefetch;
-    Candidates candidates[RT_WIDE_MAX_STATES];
-    RayQueues t = {0};
+    Candidates candidates[RT_WIDE_MAX_IN_FLIGHT];
+    RayQueues t;
+    t.in_flight = 0;
+    memset(t.count, 0, sizeof t.count); /* not the lists: a stream may have few rays */
     for (uint32_t i = 0; i < q->self->in_flight; i++)
         start_next_ray(q, &t, &q->states[i], any, counted, ahead);
     while (t.in_flight > 0) {
@@ -478,6 +393,7 @@ typedef struct Scratch {
 enum {
     WINDOW = 4096,      /* rays that are sorted together */
     RETRY = 256 * 1024, /* rays traced alone before packets are tried again */
+    FEWEST = 9          /* with fewer rays in flight each waits nearly as long as alone */
 };
 
 /* Each is compiled once, not inlined into its callers. */
@@ -532,7 +448,7 @@ RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay
     const Query q = {
         self,         tree,       &accel->scene->geometry, scratch, rays, hits, occluders, tallies,
         &own->source, own->states};
-    if (!counted && (self->in_flight == 1 || count == 1)) {
+    if (!counted && (self->in_flight == 1 || count < FEWEST)) {
         trace_one_by_one(&q, count, any);
         return;
     }
