@@ -185,7 +185,7 @@ PLACE_TEST(an_interrupted_run_resumes_and_loses_no_finished_cell) {
     assert_ok(run(place, "whole", RT_START_FRESH, 1, nobody, error));
     OWNED_MEMORY char *whole = read_in(place, "whole/counts.csv"),
                       *lines = read_in(place, "whole/cells.jsonl");
-    for (int events = 1; events < 60; events += 17) {
+    for (int events = 1; events < 60; events += 29) {
         int left = events;
         RtError stopped;
         RtRunObserver observer = {&left, stop_after, NULL};

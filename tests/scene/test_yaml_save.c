@@ -20,6 +20,7 @@ static void assert_survives(const RtScene *scene) {
 /* What a large built-in has in a file of a hundred megabytes it has in a small one, too. */
 static const char *spec_of(const char *name) {
     if (strcmp(name, "forest") == 0) return "forest:n=20";
+    if (strcmp(name, "thicket") == 0) return "thicket:n=4";
     return strcmp(name, "hall") == 0 ? "hall:size=1" : name;
 }
 

@@ -455,7 +455,7 @@ RT_TEST(brute_contradicts_no_certain_answer_and_the_certain_answer_is_exact) {
     uint64_t rays = 0, certain_rays = 0;
     for (size_t f = 0; f < rt_family_count(); f++) {
         OWNED_BENCH bench;
-        set_up_family(&bench, f, 3, 40);
+        set_up_family(&bench, f, 3, RT_SHARE(40, 12));
         const RtGeometry *g = &bench.scene.geometry;
         for (size_t i = 0; i < bench.reference.count; i++) {
             const RtRay *ray = &bench.reference.rays[i];
