@@ -282,7 +282,7 @@ static Instancing instancing(const Recipe *recipe) {
     case ON_A_LATTICE: return (Instancing){1, 0, 0, 27};
     case COINCIDENT: return (Instancing){3, 4, 0, 3 * COINCIDENT_COUNT};
     case HUGE_BESIDE_TINY: return (Instancing){3, 4, 0, 16};
-    case CONCENTRIC: return (Instancing){4, 1, 0, 2}; /* the costs of levels may multiply */
+    case CONCENTRIC: return (Instancing){8, 1, 0, 2}; /* the costs of levels may multiply */
     default: return (Instancing){6, 4, 2, 16};
     }
 }
