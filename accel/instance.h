@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Entering instances (core/shape/instance.h), in two halves: between them the part is asked for the hit of
- * the moved ray, which is alone (instance.c) or one of a stream (packets of wide, item).
+/* Entering instances (core/shape/instance.h), with a begin and an end: between them the part is asked for the
+ * hit of the moved ray, which is alone (instance.c) or one of a stream (packets of wide, item).
  *
  * The part is asked for hits up to the best one, but not where the interval of the instance's thick box ends
  * before it: a hit beyond would be clamped to that end, and so be nearer. */
@@ -14,7 +14,8 @@ typedef struct RtEntry {
     float near, far;
 } RtEntry;
 
-/* Moves a ray that meets the instance's box into the part, *inside. False if it is no ray there. */
+/* Moves a ray that meets the instance's box into the part, *inside, up to the limit above. False if it is no
+ * valid ray there. Counts nothing. */
 RT_KERNEL bool rt_enter_move(const RtInstance *instance, const RtRay *ray, const RtHit *best,
                              const RtEntry *entry, RtRay *inside) {
     if (!rt_instance_enter(instance, ray, inside)) return false;
@@ -22,7 +23,7 @@ RT_KERNEL bool rt_enter_move(const RtInstance *instance, const RtRay *ray, const
     return true;
 }
 
-/* The same for any ray. False if it misses the instance, or can find nothing better there. */
+/* The same for any ray, counted. False if it misses the instance, or can find nothing better there. */
 RT_KERNEL bool rt_enter_begin(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray,
                               const RtHit *best, RtEntry *entry, RtRay *inside, RtTally *tally) {
     rt_count_test(geometry, id, tally);

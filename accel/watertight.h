@@ -100,7 +100,7 @@ RT_KERNEL RtFloats rt_lanes_shift(RtFloats thickness, RtFloats org) {
     return thickness + rt_abs(org) * 0x1p-23f;
 }
 
-/* What rt_box_admit needs of each ray, by axis. */
+/* What rt_box_own_span needs of each ray, by axis, and for rt_box_admit tmin and tmax. */
 typedef struct RtLaneRays {
     RtFloats org[3], inv[3], tmin, tmax; /* tmax finite */
     RtInts negative[3];                  /* -1 where dir has its sign bit set, else 0 */

@@ -20,7 +20,8 @@
  *
  * At a leaf the prefilter tests RT_GROUPS rays with four triangles, RT_LANES pairs in a vector. Pairs that
  * pass are collected until there are RT_LANES of them, and tested in full by the operations of
- * rt_triangle_hit. Their rays continue meanwhile. Leaves of spheres are tested at once. */
+ * rt_triangle_hit. Their rays continue meanwhile. Leaves of spheres are tested at once. Rays that meet the
+ * box of an instance, tested in lanes, enter its part as a stream. */
 #ifndef RT_ACCEL_WIDE_PACKET_H
 #define RT_ACCEL_WIDE_PACKET_H
 

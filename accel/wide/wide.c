@@ -50,7 +50,8 @@
       "packets traced at once on a thread, each of up to 64 rays that visit nodes together; 0: none",        \
       "measured")                                                                                            \
     X(PARAM_SHARING, "sharing", RT_FLOAT("5", 0, 64, "0|8"),                                                 \
-      "packets are made only if this many rays share the visit of a node, on average; 0: always",            \
+      "packets are made only if this many rays, half as many over instances, share the visit of a node, on " \
+      "average; 0: always",                                                                                  \
       "measured")                                                                                            \
     X(PARAM_HUGE_PAGES, "huge_pages", RT_FLAG("on"), "request large pages from the system", "measured")      \
     X(PARAM_ISA, RT_ISA_PARAM)

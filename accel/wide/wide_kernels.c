@@ -393,7 +393,7 @@ typedef struct Scratch {
 enum {
     WINDOW = 4096,      /* rays that are sorted together */
     RETRY = 256 * 1024, /* rays traced alone before packets are tried again */
-    FEWEST = 9          /* with fewer rays in flight each waits nearly as long as alone */
+    FEWEST = 9          /* rays of a stream: fewer, one after the other, take no longer */
 };
 
 /* Each is compiled once, not inlined into its callers. */
@@ -412,7 +412,7 @@ DEFINE_STREAMS(nearest, false)
 DEFINE_STREAMS(occluded, true)
 
 /* Factors on the parameter `sharing`. Streams for any hit need no distances, so packets pay later. Without
- * AVX2 a gather loads word by word, so packets pay only for nearest hits of rays that share much. */
+ * AVX2 a gather loads word by word, so packets pay for rays that share much, and hardly for any hit. */
 #if defined(__AVX2__)
 #define WORTH_NEAREST 1.0f
 #define WORTH_ANY     1.2f

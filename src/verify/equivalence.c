@@ -14,7 +14,7 @@
 /* Rays per work item, and the longest stream: more than any accelerator processes at once. */
 #define CHUNK 1500
 
-static const size_t stream_lengths[] = {1, 7, 64, CHUNK};
+static const size_t stream_lengths[] = {1, 11, 64, CHUNK};
 enum { STREAM_LENGTHS = sizeof stream_lengths / sizeof stream_lengths[0], KERNELS = 2, PASSES = 2 };
 
 /* One of the modes in which a chunk is traced. */

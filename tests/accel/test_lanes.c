@@ -377,15 +377,23 @@ RT_TEST(hits_are_admitted_to_boxes_of_triangles_in_lanes_as_one_by_one) {
             box = rt_box_add_point(box, v[k]);
             for (int a = 0; a < 3; a++) at[k][a] = rt_all(v[k].at[a]);
         }
-        const RtRay ray = {.org = org, .dir = rt_sub(v[i % 3], org), .tmax = INFINITY};
+        RtRay ray = {.org = org, .dir = rt_sub(v[i % 3], org), .tmax = INFINITY};
+        if (i % 8 == 7) ray.dir.at[i / 8 % 3] = i % 16 == 7 ? 0.0f : -0.0f;
+        if (i % 64 == 63) ray.org.at[i / 8 % 3] = box.hi.at[i / 8 % 3];
         RtPreparedRay prepared = rt_ray_prepare(&ray, &box);
         for (int a = 0; a < 3; a++) {
-            rays.org[a] = rt_all(org.at[a]);
+            rays.org[a] = rt_all(ray.org.at[a]);
             rays.inv[a] = 1 / rt_all(ray.dir.at[a]);
             rays.negative[a] = rt_all_ints(-(int)prepared.negative[a]);
         }
         float near, far;
         rt_box_own_span(&box, &prepared, &near, &far);
+        const RtFloats lo[3] = {rt_all(box.lo.x), rt_all(box.lo.y), rt_all(box.lo.z)};
+        const RtFloats hi[3] = {rt_all(box.hi.x), rt_all(box.hi.y), rt_all(box.hi.z)};
+        RtFloats from, to;
+        rt_own_span(&rays, lo, hi, &from, &to);
+        assert_memory_equal(&near, &from, sizeof near);
+        assert_memory_equal(&far, &to, sizeof far);
         float t = (i & 4 ? near : far) * (1 + rt_random_between(&random, -0x1p-18f, 0x1p-18f)),
               lanes[RT_LANES];
         RtFloats all = rt_all(t);
