@@ -330,6 +330,14 @@ RT_TEST(of_a_thousand_instances_that_coincide_the_first_is_hit) {
     assert_exact_on(scene, 1);
 }
 
+/* Sheared, their boxes bound them more tightly than their parts' reach does. */
+RT_TEST(extents_contain_sheared_instances) {
+    static const char *const extents[] = {"extents", "extents:kind=obb", "extents:kind=sphere", "clusters",
+                                          "clusters:extent=obb"};
+    OWNED_SCENE scene = open_scene("family:kind=instanced-far,seed=328");
+    for (size_t i = 0; i < sizeof extents / sizeof extents[0]; i++) describe_spec(&scene, extents[i]);
+}
+
 RT_TEST(a_million_coincident_instances_are_built_and_answer) {
     OWNED_SCENE scene = begin_balls();
     for (int i = 0; i < RT_SHARE(1000000, 10000); i++) place(&scene, &scene, 0, rt_transform_identity());

@@ -228,12 +228,17 @@ double rt_reach(const double reach[RT_REACHES], RtVec3d direction) {
     return sum;
 }
 
+/* The less of two bounds: by the part's reach, and by its box. */
 static double instance_support(const RtGeometry *g, uint32_t index, RtVec3d direction) {
     const RtInstance *instance = &g->instances[index];
+    const RtBox *box = &instance->geometry->box;
+    double within = 0;
     RtVec3d inside; /* by the transposed matrix */
-    for (int a = 0; a < 3; a++)
+    for (int a = 0; a < 3; a++) {
         inside.at[a] = rt_dotd(direction, rt_transform_column(&instance->to_world, a));
-    return rt_reach(instance->geometry->reach, inside) +
+        within += inside.at[a] * (double)(inside.at[a] < 0 ? box->lo : box->hi).at[a];
+    }
+    return fmin(rt_reach(instance->geometry->reach, inside), within) +
            rt_dotd(direction, rt_transform_column(&instance->to_world, 3));
 }
 
