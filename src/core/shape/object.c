@@ -228,7 +228,8 @@ double rt_reach(const double reach[RT_REACHES], RtVec3d direction) {
     return sum;
 }
 
-/* The less of two bounds: by the part's reach, and by its box. */
+/* The less of two bounds: by the part's reach, which is larger where it is sheared, and by its box, which is
+ * larger where it is turned. */
 static double instance_support(const RtGeometry *g, uint32_t index, RtVec3d direction) {
     const RtInstance *instance = &g->instances[index];
     const RtBox *box = &instance->geometry->box;
@@ -242,15 +243,14 @@ static double instance_support(const RtGeometry *g, uint32_t index, RtVec3d dire
            rt_dotd(direction, rt_transform_column(&instance->to_world, 3));
 }
 
-/* The box of the part's box is larger where it is turned. */
 static RtBox instance_box(const RtGeometry *g, uint32_t index) {
-    RtBox box = rt_moved_box(&g->instances[index].geometry->box, &g->instances[index].to_world);
+    RtBox box;
     for (int a = 0; a < 3; a++) {
         RtVec3d axis = {{0, 0, 0}};
         axis.at[a] = 1;
-        box.hi.at[a] = rt_minf(box.hi.at[a], rt_float_above(instance_support(g, index, axis)));
+        box.hi.at[a] = rt_float_above(instance_support(g, index, axis));
         axis.at[a] = -1;
-        box.lo.at[a] = rt_maxf(box.lo.at[a], rt_float_below(-instance_support(g, index, axis)));
+        box.lo.at[a] = rt_float_below(-instance_support(g, index, axis));
     }
     return box;
 }
